@@ -3,4 +3,25 @@
 pub mod hierarchy;
 pub mod mesh;
 pub mod progress;
+pub mod random;
 pub mod sphere_map;
+
+#[cfg(test)]
+extern crate self as orbflow_geometry;
+#[cfg(test)]
+#[path = "../tests/common/mod.rs"]
+mod shapes;
+
+#[cfg(test)]
+mod tests {
+    use crate::shapes;
+
+    #[test]
+    fn the_test_shapes_are_closed_and_of_genus_zero() {
+        for (name, mesh) in shapes::closed(6) {
+            assert!(mesh.is_closed(), "{name}");
+            assert_eq!(mesh.euler_number(), 2, "{name}");
+            assert_eq!(mesh.n_faces(), 6 * 6 * 6 * 2, "{name}");
+        }
+    }
+}

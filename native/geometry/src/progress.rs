@@ -83,6 +83,7 @@ impl<'a> Progress<'a> {
 
     /// The part of this job between the shares `from` and `to`, called `name`.
     /// An empty name keeps the name of this part.
+    #[must_use]
     pub fn part(&self, name: &'a str, from: f64, to: f64) -> Self {
         Self {
             token: self.token.clone(),

@@ -193,7 +193,9 @@ impl CollapseHierarchy {
         let mut faces: Vec<[VertexId; 3]> = self.base.to_vec();
         let mut fans: VertexMap<Vec<u32>> = VertexMap::filled(self.n_vertices(), Vec::new());
         for (f, corners) in self.base.iter().enumerate() {
-            corners.iter().for_each(|&v| fans[v].push(f as u32));
+            for &v in corners {
+                fans[v].push(f as u32);
+            }
         }
         for index in (0..self.n_collapses()).rev().take(n_undone) {
             let Collapse { vertex, ring } = self.collapse(index);
@@ -212,7 +214,9 @@ impl CollapseHierarchy {
             for (a, b) in [(old, ring[1]), (ring[ring.len() - 1], old)] {
                 let face = faces.len() as u32;
                 faces.push([vertex, a, b]);
-                [vertex, a, b].into_iter().for_each(|v| fans[v].push(face));
+                for v in [vertex, a, b] {
+                    fans[v].push(face);
+                }
             }
         }
         Ok(faces)

@@ -62,6 +62,7 @@ impl HalfedgeId {
     }
 
     /// The next halfedge around the same triangle.
+    #[must_use]
     pub fn next(self) -> Self {
         Self(if self.0 % 3 == 2 {
             self.0 - 2
@@ -71,8 +72,9 @@ impl HalfedgeId {
     }
 
     /// The previous halfedge around the same triangle.
+    #[must_use]
     pub fn prev(self) -> Self {
-        Self(if self.0 % 3 == 0 {
+        Self(if self.0.is_multiple_of(3) {
             self.0 + 2
         } else {
             self.0 - 1
@@ -165,6 +167,14 @@ impl<I: Id, T> IdMap<I, T> {
     pub fn push(&mut self, value: T) -> I {
         self.values.push(value);
         I::from_index(self.values.len() - 1)
+    }
+}
+
+impl<'a, I: Id, T> IntoIterator for &'a IdMap<I, T> {
+    type Item = &'a T;
+    type IntoIter = std::slice::Iter<'a, T>;
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
     }
 }
 

@@ -46,7 +46,7 @@ impl HintGrid {
         let [u, v] = [direction[(axis + 1) % 3], direction[(axis + 2) % 3]];
         let scale = size[axis].max(f64::MIN_POSITIVE);
         let index = |t: f64| {
-            let share = (t / scale + 1.0) / 2.0;
+            let share = f64::midpoint(t / scale, 1.0);
             ((share * self.resolution as f64) as usize).min(self.resolution - 1)
         };
         let side = 2 * axis + usize::from(direction[axis] < 0.0);

@@ -91,7 +91,7 @@ impl SphereMap {
         if !mesh.is_closed() {
             return Err(NotABijection::Open);
         }
-        let off = |p: &DVec3| !((p.length_squared() - 1.0).abs() < 1e-9);
+        let off = |p: &DVec3| p.is_nan() || (p.length_squared() - 1.0).abs() >= 1e-9;
         if let Some((vertex, p)) = sphere.iter_ids().find(|(_, p)| off(p)) {
             return Err(NotABijection::NotOnSphere {
                 vertex,

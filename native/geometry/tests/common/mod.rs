@@ -1,0 +1,129 @@
+//! Closed meshes for tests, chosen by property: round, bumpy, with corners, long, with limbs.
+#![allow(dead_code, missing_docs)] // Every test file uses a part of them.
+
+use glam::{DMat3, DVec3};
+use orbflow_geometry::mesh::{PolygonMesh, TriangleMesh, VertexId};
+use orbflow_geometry::random::Random;
+
+/// A sphere of radius 1: a cube of n × n squares a side, each cut in two, blown up.
+pub fn sphere(n: u32) -> TriangleMesh {
+    mapped_cube(n, |p| p.normalize_or(DVec3::Z))
+}
+
+/// A box with sharp edges, of sides 1, 0.8 and 0.6.
+pub fn cuboid(n: u32) -> TriangleMesh {
+    mapped_cube(n, |p| p * DVec3::new(0.5, 0.4, 0.3))
+}
+
+/// A straight rod of radius 1 with round ends, `length` between the ends' centres.
+pub fn capsule(length: f64, n: u32) -> TriangleMesh {
+    mapped_cube(n, |p| {
+        let s = p.normalize_or(DVec3::Z);
+        // The middle third of the cube's height becomes the straight part.
+        let along = (p.z * 1.5).clamp(-0.5, 0.5) * length;
+        let stretched = DVec3::new(
+            p.x,
+            p.y,
+            (p.z.abs() - 1.0 / 3.0).max(0.0) * 1.5 * p.z.signum(),
+        );
+        stretched.normalize_or(s) + DVec3::Z * along
+    })
+}
+
+/// A smooth star-shaped body with random bumps.
+pub fn blob(seed: u64, n: u32) -> TriangleMesh {
+    let mut random = Random::new(seed);
+    let mut vector = || DVec3::new(random.unit(), random.unit(), random.unit()) * 2.0 - 1.0;
+    let waves: Vec<(DVec3, DVec3)> = (0..5).map(|_| (vector() * 4.0, vector() * 3.0)).collect();
+    mapped_cube(n, |p| {
+        let s = p.normalize_or(DVec3::Z);
+        let bumps: f64 = waves
+            .iter()
+            .map(|(k, phase)| (k.dot(s) + phase.x).sin())
+            .sum();
+        s * (1.0 + 0.09 * bumps)
+    })
+}
+
+/// A ball with six limbs of random length, bent; not star-shaped once bent.
+pub fn limbs(seed: u64, n: u32) -> TriangleMesh {
+    let mut random = Random::new(seed);
+    let axes = [
+        DVec3::X,
+        DVec3::Y,
+        DVec3::Z,
+        DVec3::NEG_X,
+        DVec3::NEG_Y,
+        DVec3::NEG_Z,
+    ];
+    let lengths = axes.map(|_| 1.0 + 2.5 * random.unit());
+    let bend = 0.15 + 0.25 * random.unit();
+    mapped_cube(n, |p| {
+        let s = p.normalize_or(DVec3::Z);
+        let mut radius = 1.0;
+        for (axis, length) in axes.iter().zip(lengths) {
+            radius += length * (-(1.0 - axis.dot(s)) * 14.0).exp();
+        }
+        let q = s * radius;
+        DMat3::from_rotation_z(bend * q.length()) * DMat3::from_rotation_x(bend * q.z) * q
+    })
+}
+
+/// Some closed meshes of genus 0 with about 6 n² × 2 faces each.
+pub fn closed(n: u32) -> Vec<(&'static str, TriangleMesh)> {
+    vec![
+        ("sphere", sphere(n)),
+        ("cuboid", cuboid(n)),
+        ("capsule", capsule(6.0, n)),
+        ("blob", blob(1, n)),
+        ("limbs", limbs(2, n)),
+    ]
+}
+
+/// The same mesh as polygons.
+pub fn polygons(mesh: &TriangleMesh) -> PolygonMesh {
+    let faces: Vec<_> = mesh.faces().iter().map(|f| f.map(|v| v.0)).collect();
+    PolygonMesh::from_faces(mesh.positions().to_vec(), &faces).expect("a triangle mesh is one")
+}
+
+/// A cube of side 2 with n × n squares a side, cut alternately and mapped point by point.
+pub fn mapped_cube(n: u32, map: impl Fn(DVec3) -> DVec3) -> TriangleMesh {
+    let index = |p: [u32; 3]| (p[0] * (n + 1) + p[1]) * (n + 1) + p[2];
+    let mut ids = vec![u32::MAX; (n as usize + 1).pow(3)];
+    let mut positions = Vec::new();
+    let mut faces = Vec::new();
+    let mut vertex = |p: [u32; 3]| {
+        let id = &mut ids[index(p) as usize];
+        if *id == u32::MAX {
+            *id = positions.len() as u32;
+            let corner = DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]));
+            positions.push(map(corner * 2.0 / f64::from(n) - 1.0));
+        }
+        VertexId(*id)
+    };
+    for (axis, end, i, j) in (0..3).flat_map(|axis| {
+        [0, n]
+            .into_iter()
+            .flat_map(move |end| (0..n).flat_map(move |i| (0..n).map(move |j| (axis, end, i, j))))
+    }) {
+        let at = |i: u32, j: u32| {
+            let mut p = [0; 3];
+            p[axis] = end;
+            p[(axis + 1) % 3] = i;
+            p[(axis + 2) % 3] = j;
+            p
+        };
+        let mut quad = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)].map(&mut vertex);
+        if end == 0 {
+            quad.reverse();
+        }
+        let [a, b, c, d] = quad;
+        let cut = if (i + j) % 2 == 0 {
+            [[a, b, c], [a, c, d]]
+        } else {
+            [[a, b, d], [b, c, d]]
+        };
+        faces.extend(cut);
+    }
+    TriangleMesh::new(positions, faces).expect("a cube's surface is closed")
+}
