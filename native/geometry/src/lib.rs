@@ -4,6 +4,7 @@ pub mod hierarchy;
 pub mod mesh;
 pub mod progress;
 pub mod random;
+pub mod sparse;
 pub mod sphere_map;
 
 #[cfg(test)]
