@@ -5,6 +5,7 @@ pub mod mesh;
 pub mod progress;
 pub mod random;
 pub mod sparse;
+pub mod sphere;
 pub mod sphere_map;
 
 #[cfg(test)]

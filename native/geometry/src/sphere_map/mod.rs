@@ -6,7 +6,9 @@
 //! offsets x − s interpolated with the same weights. It is a bijection exactly if every spherical
 //! triangle is positively oriented, det(s₁, s₂, s₃) > 0, and together they cover the sphere once.
 
+mod cover;
 mod locate;
+mod travel;
 
 use std::f64::consts::PI;
 
@@ -15,7 +17,9 @@ use robust::{Coord3D, orient3d};
 use thiserror::Error;
 
 use crate::mesh::{FaceId, TriangleMesh, VertexId, VertexMap};
+pub use cover::{NotACover, check_cover};
 use locate::HintGrid;
+pub use travel::walk_along;
 
 /// A closed mesh with a point of the unit sphere for every vertex, proven to be a bijection.
 #[derive(Clone, Debug)]
@@ -200,9 +204,11 @@ pub fn folded_faces(faces: &[[VertexId; 3]], sphere: &VertexMap<DVec3>) -> Vec<F
 
 /// How often the sphere is covered: the sum of the signed solid angles over 4π, rounded.
 pub fn degree(faces: &[[VertexId; 3]], sphere: &VertexMap<DVec3>) -> i64 {
-    let angles = faces
-        .iter()
-        .map(|f| solid_angle(sphere[f[0]], sphere[f[1]], sphere[f[2]]));
+    degree_of(faces.iter().map(|f| f.map(|v| sphere[v])))
+}
+
+fn degree_of(triangles: impl Iterator<Item = [DVec3; 3]>) -> i64 {
+    let angles = triangles.map(|[a, b, c]| solid_angle(a, b, c));
     (angles.sum::<f64>() / (4.0 * PI)).round() as i64
 }
 
