@@ -1,7 +1,9 @@
 //! Orbflow's core.
 
 pub mod hierarchy;
+pub mod measure;
 pub mod mesh;
+pub mod nearest;
 pub mod progress;
 pub mod random;
 pub mod sparse;
