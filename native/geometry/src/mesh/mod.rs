@@ -6,6 +6,7 @@
 //! builds a new mesh, so that every mesh passes the checks.
 
 mod ids;
+pub mod io;
 mod polygon_mesh;
 mod triangle_mesh;
 
