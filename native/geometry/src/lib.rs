@@ -1,5 +1,6 @@
 //! Orbflow's core.
 
+pub mod deform;
 pub mod hierarchy;
 pub mod measure;
 pub mod mesh;

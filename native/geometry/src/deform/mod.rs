@@ -1,0 +1,168 @@
+//! Deforming a sphere into a surface.
+//!
+//! A primitive, a mesh on the unit sphere, goes where the sphere map says: *sphere point + offset =
+//! surface point*. From there on every vertex lives twice, in space and on the sphere:
+//!
+//! ```text
+//! place on the map ─▶ relax along the surface ─▶ lift onto the full-resolution target ─▶ straddle
+//!      locate              slide, flip                 closest point that agrees        least squares
+//! ```
+//!
+//! A slide moves the sphere point along; one that would fold the primitive on the sphere is
+//! refused, so the result covers the sphere, and with it the surface, exactly once from beginning
+//! to end. The last two steps move vertices off the map's surface by no more than an edge.
+//!
+//! Not done here: choosing the primitive (`sphere`), and proving that faces do not cross in space.
+
+mod flips;
+mod project;
+mod relax;
+mod sheet;
+mod straddle;
+mod target;
+#[cfg(test)]
+mod tests;
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use crate::measure::vertex_normals;
+use crate::mesh::{FaceId, PolygonMesh};
+use crate::progress::{Cancelled, Progress};
+use crate::sparse::NotPositiveDefinite;
+use crate::sphere_map::{NotACover, SphereMap, check_cover};
+use sheet::Sheet;
+pub use target::Target;
+
+/// What to do, and how much of it.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// How often every vertex slides. Fewer leave uneven faces, more cost time for little.
+    pub n_relaxations: usize,
+    /// How often the faces are fitted to the surface by least squares.
+    pub n_straddles: usize,
+    /// How strongly vertices are held to the surface while faces are fitted.
+    pub anchor: f64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            n_relaxations: 15,
+            n_straddles: 2,
+            anchor: 0.1,
+        }
+    }
+}
+
+/// A primitive that has become a remeshed surface.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Deformed {
+    /// The mesh in space. Triangles may be connected otherwise than in the primitive.
+    pub mesh: PolygonMesh,
+    /// The sphere point of every vertex, with which the faces cover the sphere once.
+    pub sphere: Vec<DVec3>,
+    /// What was done.
+    pub report: Report,
+}
+
+/// What was done.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize)]
+pub struct Report {
+    /// How many edges were flipped.
+    pub n_flips: usize,
+    /// How many vertices could not slide in the last round without folding or spoiling a face.
+    pub n_stuck: usize,
+    /// How many vertices did not get all the way onto the full-resolution surface.
+    pub n_unprojected: usize,
+}
+
+/// Why a primitive cannot be deformed.
+#[derive(Clone, PartialEq, Debug, Error)]
+pub enum Error {
+    /// The primitive does not cover the sphere once.
+    #[error("the primitive is not a sphere: {0}")]
+    Primitive(#[from] NotACover),
+    /// A face has more than four corners.
+    #[error("face {face} of the primitive has {n_corners} corners; at most 4 can be deformed")]
+    TooManyCorners {
+        /// The first such face.
+        face: FaceId,
+        /// How many corners it has.
+        n_corners: usize,
+    },
+    /// The least squares fit failed: numbers out of range.
+    #[error("faces cannot be fitted to the surface: {0}")]
+    Fit(#[from] NotPositiveDefinite),
+    /// The user asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// Deforms a primitive into the target's surface by way of a sphere map of a coarser version of it.
+///
+/// The target must lie in the same coordinates as the map's mesh. Kept: the counts of vertices and
+/// faces, closedness, and that the faces cover the sphere once. Quads keep their connections,
+/// triangles may flip edges. Linear in the number of faces but for the logarithm of the target's.
+///
+/// # Errors
+/// A primitive that is not a sphere of triangles and quads, and [`Cancelled`].
+pub fn deform(
+    map: &SphereMap,
+    primitive: &PolygonMesh,
+    target: &Target,
+    settings: &Settings,
+    progress: &Progress,
+) -> Result<Deformed, Error> {
+    check_primitive(primitive)?;
+    let mut report = Report::default();
+    let mut sheet = Sheet::new(map, vertex_normals(map.mesh()), primitive);
+    slide_and_flip(
+        &mut sheet,
+        settings,
+        &mut report,
+        &progress.part("", 0.0, 0.6),
+    )?;
+    let reach = sheet.mean_edge();
+    report.n_unprojected = project::project(&mut sheet, target, reach);
+    for round in 0..settings.n_straddles {
+        progress.at(0.7 + 0.3 * round as f64 / settings.n_straddles as f64)?;
+        straddle::straddle(&mut sheet, target, [reach, settings.anchor], |_| false)?;
+    }
+    let (mesh, sphere) = sheet.into_mesh();
+    debug_assert_eq!(check_cover(&mesh, &sphere), Ok(()));
+    Ok(Deformed {
+        mesh,
+        sphere,
+        report,
+    })
+}
+
+fn check_primitive(primitive: &PolygonMesh) -> Result<(), Error> {
+    for face in primitive.face_ids() {
+        let n_corners = primitive.face(face).len();
+        if n_corners > 4 {
+            return Err(Error::TooManyCorners { face, n_corners });
+        }
+    }
+    Ok(check_cover(primitive, primitive.positions())?)
+}
+
+/// Rounds of sliding, with flips in between while there are triangles.
+fn slide_and_flip(
+    sheet: &mut Sheet,
+    settings: &Settings,
+    report: &mut Report,
+    progress: &Progress,
+) -> Result<(), Cancelled> {
+    let n = settings.n_relaxations;
+    for round in 0..n {
+        let [from, to] = [round, round + 1].map(|r| r as f64 / n as f64);
+        report.n_flips += flips::flip_edges(sheet, |_, _| false);
+        report.n_stuck = relax::relax(sheet, 1, &progress.part("", from, to))?;
+    }
+    report.n_flips += flips::flip_edges(sheet, |_, _| false);
+    Ok(())
+}

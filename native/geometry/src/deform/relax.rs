@@ -1,0 +1,99 @@
+//! Evening out: vertices slide along the surface until faces are near to regular and of one size.
+
+use glam::DVec3;
+
+use super::sheet::{Face, Sheet};
+use crate::mesh::VertexId;
+use crate::progress::{Cancelled, Progress};
+
+/// Quality that no move may spoil: below it a move must make the worst face at the vertex better.
+/// At 0.2 slivers survive; at 0.5 vertices get stuck where the surface bends.
+const GUARDED_QUALITY: f64 = 0.35;
+/// Share of the wanted size in a face's wish; the rest is the size it has. At 1 faces on stretched
+/// limbs push each other into slivers, at 0.5 sizes even out too slowly.
+const SIZE_WISH: f64 = 0.8;
+
+/// Moves every vertex `n_rounds` times to where its faces would be regular polygons of equal size.
+///
+/// Each face pulls its corners towards the regular polygon of its own centre and turn (shape
+/// matching, Müller et al. 2005); a vertex goes to the mean of its faces' wishes, along the surface.
+/// Moves that fold the sphere or spoil a face are halved once, then refused. Returns how many were.
+pub(super) fn relax(
+    sheet: &mut Sheet,
+    n_rounds: usize,
+    progress: &Progress,
+) -> Result<usize, Cancelled> {
+    let mut n_refused = 0;
+    for round in 0..n_rounds {
+        progress.at(round as f64 / n_rounds as f64)?;
+        let radius = wanted_radius(sheet);
+        n_refused = 0;
+        for v in sheet.vertex_ids() {
+            let step = wish(sheet, v, radius);
+            if !slide(sheet, v, step) && !slide(sheet, v, step * 0.5) {
+                n_refused += 1;
+            }
+        }
+    }
+    Ok(n_refused)
+}
+
+/// Moves a vertex along the surface if that neither folds the sphere nor spoils a face.
+fn slide(sheet: &mut Sheet, vertex: VertexId, step: DVec3) -> bool {
+    let now = *sheet.point(vertex);
+    let there = sheet.walked(vertex, now.position + step);
+    let before = sheet.worst_quality(vertex, &now);
+    let after = sheet.worst_quality(vertex, &there);
+    after >= before.min(GUARDED_QUALITY) && sheet.try_move(vertex, there)
+}
+
+/// The circumradius of a regular face when all have equal area.
+fn wanted_radius(sheet: &Sheet) -> [f64; 2] {
+    let areas = sheet.faces().iter().map(|face| area(sheet, face));
+    let mean = areas.sum::<f64>() / sheet.faces().len().max(1) as f64;
+    // A triangle of circumradius r has area 3√3/4 r², a square 2 r².
+    [(mean * 4.0 / 27.0f64.sqrt()).sqrt(), (mean / 2.0).sqrt()]
+}
+
+fn area(sheet: &Sheet, face: &Face) -> f64 {
+    let p = |i| sheet.position(face.corner(0, i));
+    match face.corners().len() {
+        3 => (p(1) - p(0)).cross(p(2) - p(0)).length() / 2.0,
+        _ => (p(2) - p(0)).cross(p(3) - p(1)).length() / 2.0,
+    }
+}
+
+/// The way to the mean of where the faces at a vertex want it, along the surface.
+fn wish(sheet: &Sheet, vertex: VertexId, radius: [f64; 2]) -> DVec3 {
+    let here = sheet.point(vertex);
+    let ring = sheet.ring(vertex);
+    let sum = ring.iter().fold(DVec3::ZERO, |sum, &face| {
+        let face = &sheet.faces()[face];
+        let corner = face.find(vertex).expect("a ring's faces have the vertex");
+        sum + regular_corner(sheet, face, corner, radius)
+    });
+    let step = sum / ring.len() as f64 - here.position;
+    step - here.normal * step.dot(here.normal)
+}
+
+/// Where a corner goes when its face becomes the nearest regular polygon of about the wanted size.
+fn regular_corner(sheet: &Sheet, face: &Face, corner: usize, radius: [f64; 2]) -> DVec3 {
+    let at = |steps| sheet.point(face.corner(corner, steps));
+    let n = face.corners().len();
+    let (here, next, before) = (at(0), at(1), at(n - 1));
+    let sum = here.normal + next.normal + before.normal;
+    let normal = sum.normalize_or_zero();
+    let turned = normal.cross(before.position - next.position);
+    let (centre, spoke, wanted) = if n == 3 {
+        let centre = (here.position + next.position + before.position) / 3.0;
+        let spoke = (here.position - centre) * 0.5 + turned * (3.0f64.sqrt() / 6.0);
+        (centre, spoke, radius[0])
+    } else {
+        let far = at(2).position;
+        let centre = (here.position + next.position + before.position + far) / 4.0;
+        (centre, (here.position - far + turned) / 4.0, radius[1])
+    };
+    let length = spoke.length();
+    let size = SIZE_WISH * wanted + (1.0 - SIZE_WISH) * length;
+    centre + spoke * (size / length.max(f64::MIN_POSITIVE))
+}

@@ -1,0 +1,265 @@
+//! The moving mesh: faces whose vertices live on the surface and on the sphere at once.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::mesh::{FaceId, FaceMap, PolygonMesh, VertexId, VertexMap};
+use crate::sphere_map::{SphereMap, SurfacePoint, is_positive, walk_along};
+
+/// A triangle or a quad.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) struct Face {
+    corners: [VertexId; 4],
+    n: u8,
+}
+
+impl Face {
+    /// A face of three or four corners.
+    pub fn new(corners: &[VertexId]) -> Self {
+        let mut all = [corners[0]; 4];
+        all[..corners.len()].copy_from_slice(corners);
+        Self {
+            corners: all,
+            n: corners.len() as u8,
+        }
+    }
+
+    pub fn corners(&self) -> &[VertexId] {
+        &self.corners[..self.n as usize]
+    }
+
+    /// The corner `steps` after corner `i`, around and around.
+    pub fn corner(&self, i: usize, steps: usize) -> VertexId {
+        self.corners[(i + steps) % self.n as usize]
+    }
+
+    /// Which corner a vertex is.
+    pub fn find(&self, vertex: VertexId) -> Option<usize> {
+        self.corners().iter().position(|&v| v == vertex)
+    }
+}
+
+/// Where a vertex is: on the map's surface, on the sphere, and in space.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct Point {
+    pub position: DVec3,
+    /// The normal of the map's surface there.
+    pub normal: DVec3,
+    pub sphere: DVec3,
+    pub place: SurfacePoint,
+}
+
+/// A primitive that is being deformed. Its faces always cover the sphere once: every move and flip
+/// keeps each face two positive spherical triangles, or one.
+pub(super) struct Sheet<'a> {
+    map: &'a SphereMap,
+    surface_normals: VertexMap<DVec3>,
+    faces: FaceMap<Face>,
+    rings: VertexMap<Vec<FaceId>>,
+    points: VertexMap<Point>,
+}
+
+impl<'a> Sheet<'a> {
+    /// Puts a primitive of triangles and quads onto the map's surface.
+    pub fn new(map: &'a SphereMap, normals: VertexMap<DVec3>, primitive: &PolygonMesh) -> Self {
+        let faces: FaceMap<Face> = primitive.faces().map(Face::new).collect();
+        let mut rings = VertexMap::filled(primitive.n_vertices(), Vec::with_capacity(6));
+        for (face, corners) in faces.iter_ids() {
+            for &v in corners.corners() {
+                rings[v].push(face);
+            }
+        }
+        let places = primitive.positions().par_iter().map(|&direction| {
+            let place = map.locate(direction);
+            Point {
+                sphere: direction,
+                ..point_at(map, &normals, place)
+            }
+        });
+        let points = VertexMap::from_vec(places.collect());
+        Self {
+            map,
+            surface_normals: normals,
+            faces,
+            rings,
+            points,
+        }
+    }
+
+    pub fn n_vertices(&self) -> usize {
+        self.points.len()
+    }
+
+    pub fn vertex_ids(&self) -> impl ExactSizeIterator<Item = VertexId> + use<> {
+        self.points.ids()
+    }
+
+    pub fn faces(&self) -> &FaceMap<Face> {
+        &self.faces
+    }
+
+    /// The faces at a vertex, in no particular order.
+    pub fn ring(&self, vertex: VertexId) -> &[FaceId] {
+        &self.rings[vertex]
+    }
+
+    pub fn point(&self, vertex: VertexId) -> &Point {
+        &self.points[vertex]
+    }
+
+    pub fn position(&self, vertex: VertexId) -> DVec3 {
+        self.points[vertex].position
+    }
+
+    /// The face on the left of the edge from `a` to `b`.
+    pub fn face_left_of(&self, a: VertexId, b: VertexId) -> Option<FaceId> {
+        let leaves = |face: &FaceId| {
+            let face = &self.faces[*face];
+            face.find(a).is_some_and(|i| face.corner(i, 1) == b)
+        };
+        self.rings[a].iter().copied().find(leaves)
+    }
+
+    /// The mean length of all edges.
+    pub fn mean_edge(&self) -> f64 {
+        let lengths = |face: &Face| {
+            let edge = |i| {
+                self.position(face.corner(0, i))
+                    .distance(self.position(face.corner(1, i)))
+            };
+            (0..face.corners().len()).map(edge).sum::<f64>()
+        };
+        let n_corners: usize = self.faces.iter().map(|face| face.corners().len()).sum();
+        self.faces.iter().map(lengths).sum::<f64>() / n_corners.max(1) as f64
+    }
+
+    /// The mesh in space and the sphere point of every vertex.
+    pub fn into_mesh(self) -> (PolygonMesh, Vec<DVec3>) {
+        let faces: Vec<Vec<u32>> = self
+            .faces
+            .iter()
+            .map(|f| f.corners().iter().map(|v| v.0).collect())
+            .collect();
+        let positions = self.points.iter().map(|p| p.position).collect();
+        let mesh = PolygonMesh::from_faces(positions, &faces);
+        let sphere = self.points.iter().map(|p| p.sphere).collect();
+        (
+            mesh.expect("vertices only move to finite positions"),
+            sphere,
+        )
+    }
+
+    /// The vertex's whereabouts after a walk on the map's surface towards a position in space.
+    pub fn walked(&self, vertex: VertexId, wanted: DVec3) -> Point {
+        let place = walk_along(self.map, self.points[vertex].place, wanted);
+        point_at(self.map, &self.surface_normals, place)
+    }
+
+    /// Moves a vertex unless that folds a face on the sphere.
+    pub fn try_move(&mut self, vertex: VertexId, to: Point) -> bool {
+        let fits = to.position.is_finite() && self.covers(vertex, to.sphere);
+        if fits {
+            self.points[vertex] = to;
+        }
+        fits
+    }
+
+    /// Moves a vertex in space only; its sphere point stays.
+    pub fn lift(&mut self, vertex: VertexId, position: DVec3) {
+        if position.is_finite() {
+            self.points[vertex].position = position;
+        }
+    }
+
+    /// Whether every face at a vertex stays positive with another sphere point for it.
+    fn covers(&self, vertex: VertexId, sphere: DVec3) -> bool {
+        let at = |v: VertexId| {
+            if v == vertex {
+                sphere
+            } else {
+                self.points[v].sphere
+            }
+        };
+        self.rings[vertex]
+            .iter()
+            .all(|&face| is_unfolded(&self.faces[face], at))
+    }
+
+    /// The worst quality of the faces at a vertex if it were at `to`.
+    pub fn worst_quality(&self, vertex: VertexId, to: &Point) -> f64 {
+        let at = |v: VertexId| if v == vertex { to } else { &self.points[v] };
+        let qualities = self.rings[vertex]
+            .iter()
+            .map(|&face| quality(&self.faces[face], at));
+        qualities.fold(f64::INFINITY, f64::min)
+    }
+
+    /// The quality of a face.
+    pub fn quality(&self, face: FaceId) -> f64 {
+        quality(&self.faces[face], |v| &self.points[v])
+    }
+
+    /// The quality of a face that is not there yet.
+    pub fn quality_of(&self, corners: &[VertexId]) -> f64 {
+        quality(&Face::new(corners), |v| &self.points[v])
+    }
+
+    /// Whether a face that is not there yet would be positive on the sphere.
+    pub fn is_unfolded(&self, corners: &[VertexId]) -> bool {
+        is_unfolded(&Face::new(corners), |v| self.points[v].sphere)
+    }
+
+    /// Replaces two triangles by the two over the other diagonal: `a b` becomes `c d`, where c
+    /// lies left of `a b` and d right of it. The caller has checked that both will be positive.
+    pub fn flip(&mut self, [left, right]: [FaceId; 2], [a, b, c, d]: [VertexId; 4]) {
+        self.faces[left] = Face::new(&[a, d, c]);
+        self.faces[right] = Face::new(&[d, b, c]);
+        self.rings[a].retain(|&face| face != right);
+        self.rings[b].retain(|&face| face != left);
+        self.rings[c].push(right);
+        self.rings[d].push(left);
+    }
+}
+
+fn point_at(map: &SphereMap, normals: &VertexMap<DVec3>, place: SurfacePoint) -> Point {
+    let corners = map.mesh().face(place.face);
+    let [u, v, w] = place.weights;
+    let sum = normals[corners[0]] * u + normals[corners[1]] * v + normals[corners[2]] * w;
+    Point {
+        position: map.surface_position(place),
+        normal: sum.normalize_or_zero(),
+        sphere: map.sphere_position(place),
+        place,
+    }
+}
+
+/// Whether a spherical face is one positive triangle, or two over one of its diagonals.
+fn is_unfolded(face: &Face, at: impl Fn(VertexId) -> DVec3) -> bool {
+    let [a, b, c, d] = face.corners.map(at);
+    if face.n == 3 {
+        return is_positive(a, b, c);
+    }
+    (is_positive(a, b, c) && is_positive(a, c, d)) || (is_positive(a, b, d) && is_positive(b, c, d))
+}
+
+/// How near a face is to a regular polygon seen along the surface's normal: 1 for a regular
+/// one, 0 for one without area, negative where a corner turns the wrong way.
+///
+/// Triangles: 2√3 × twice the area / Σ squared edges. Quads: the sine of the worst corner.
+fn quality<'p>(face: &Face, at: impl Fn(VertexId) -> &'p Point) -> f64 {
+    let corners = face.corners.map(at);
+    let p = corners.map(|c| c.position);
+    if face.n == 3 {
+        let normal =
+            (corners[0].normal + corners[1].normal + corners[2].normal).normalize_or_zero();
+        let [e, f, g] = [p[1] - p[0], p[2] - p[1], p[0] - p[2]];
+        let squares = e.length_squared() + f.length_squared() + g.length_squared();
+        return 2.0 * 3.0f64.sqrt() * e.cross(f).dot(normal) / squares.max(f64::MIN_POSITIVE);
+    }
+    let sum = corners.iter().fold(DVec3::ZERO, |sum, c| sum + c.normal);
+    let normal = sum.normalize_or_zero();
+    let edge = |i: usize| (p[(i + 1) % 4] - p[i]).normalize_or_zero();
+    let edges = [edge(0), edge(1), edge(2), edge(3)];
+    let sine = |i: usize| edges[i].cross(edges[(i + 1) % 4]).dot(normal);
+    sine(0).min(sine(1)).min(sine(2)).min(sine(3))
+}
