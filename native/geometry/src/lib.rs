@@ -1,5 +1,6 @@
 //! Orbflow's core.
 
+pub mod decimate;
 pub mod deform;
 pub mod hierarchy;
 pub mod measure;
