@@ -1,0 +1,183 @@
+"""Measures whole runs: triangles, quads, a large input, the peers beside them, the same bytes."""
+
+from pathlib import Path
+
+import numpy as np
+from bench import Bench, Row, cpu_of, failure
+from embedding import made
+from inputs import Listed, resized, single_balls, write_obj
+from runs import Run
+
+N_TRIANGLES = 6000
+N_QUADS = 2000
+LARGE_TRIANGLES = 1_000_000
+LARGE_FACES = 5000
+PEER_RANGE = (20_000, 40_000)
+
+FIGURES = (
+    "triangles",
+    "faces",
+    "quads_pct",
+    "same_topology",
+    "chamfer_pct",
+    "hausdorff_pct",
+    "f1_at_0.5_pct",
+    "f1_at_1_pct",
+    "normal_consistency",
+    "self_intersecting_pct",
+    "edge_cv",
+    "triangle_angle_mean_min",
+    "jacobian_min",
+    "jacobian_mean",
+    "irregular_pct",
+    "alignment_deg",
+    "loop_edges_pct",
+    "spiral_pct",
+    "feature_f1_pct",
+)
+
+
+def triangles(bench: Bench) -> list[Row]:
+    """`--kind triangles --faces 6000` on every mesh, isotropic remeshing beside it."""
+    rows = []
+    for mesh in single_balls(bench.dev):
+        row = _remeshed(bench, mesh, "triangles", N_TRIANGLES, N_TRIANGLES // 2)
+        peer = bench.peer(mesh.path, "isotropic", N_TRIANGLES // 2)
+        if peer["status"] == "ok" and row["ok"]:
+            found = bench.figures(mesh.path, peer["output"], N_TRIANGLES // 2)
+            row["isotropic_chamfer_pct"] = found["chamfer_pct"]
+            row["isotropic_triangles"] = found["triangles"]
+            row["isotropic_cpu_s"] = peer["cpu_s"]
+            row["chamfer_ratio"] = row["chamfer_pct"] / found["chamfer_pct"]
+        rows.append(row)
+        _say(row, "chamfer_pct", "chamfer_ratio", "f1_at_0.5_pct", "edge_cv", "cpu_s")
+    return rows
+
+
+def quads(bench: Bench) -> list[Row]:
+    """`--kind quads --faces 2000` on every mesh, Instant Meshes and QuadriFlow in turn with it."""
+    rows = []
+    for mesh in single_balls(bench.dev):
+        row = _remeshed(bench, mesh, "quads", N_QUADS, N_QUADS)
+        for peer in ("instant_meshes", *(("quadriflow",) if bench.blender else ())):
+            found = bench.peer(mesh.path, peer, N_QUADS)
+            row[f"{peer}_s"] = found.get("cpu_s")
+            row["input_triangles"] = found["input_triangles"]
+            if found["status"] == "ok":
+                figures = bench.figures(mesh.path, found["output"], N_QUADS)
+                row[f"{peer}_chamfer_pct"] = figures["chamfer_pct"]
+                row[f"{peer}_faces"] = figures["faces"]
+                row[f"{peer}_same_topology"] = figures["same_topology"]
+        rows.append(row)
+        _say(
+            row, "faces", "chamfer_pct", "f1_at_1_pct", "cpu_s", "instant_meshes_s", "quadriflow_s"
+        )
+    return rows
+
+
+def in_peer_range(rows: list[Row]) -> list[Row]:
+    """The rows whose input has 20,000 to 40,000 triangles."""
+    low, high = PEER_RANGE
+    return [row for row in rows if low <= row.get("input_triangles", 0) <= high]
+
+
+def _remeshed(bench: Bench, mesh: Listed, kind: str, n_faces: int, n_quads: int) -> Row:
+    output = bench.out / kind / f"{mesh.name}.obj"
+    output.parent.mkdir(parents=True, exist_ok=True)
+    arguments = ("--faces", n_faces, "--kind", kind, "--threads", 1)
+    done, report = bench.program("remesh", mesh.path, output, *arguments)
+    command = f"orbflow remesh {mesh.path} out.obj {' '.join(map(str, arguments))}"
+    if not done.ok:
+        return failure(mesh.name, done, command)
+    found = bench.figures(mesh.path, output, n_quads)
+    return {
+        "mesh": mesh.name,
+        "ok": True,
+        "command": command,
+        "n_asked": n_faces,
+        **_cost(done, report),
+        **{name: found.get(name) for name in FIGURES},
+        "n_folds": report["embedding"]["n_folds"],
+    }
+
+
+def _cost(done: Run, report: Row) -> Row:
+    return {
+        "cpu_s": done.cpu_s,
+        "wall_s": done.wall_s,
+        "peak_mb": done.peak_mb,
+        "steps_s": {step["name"]: step["cpu_ms"] / 1000 for step in report["steps"]},
+        "sum_of_steps_s": cpu_of(report),
+    }
+
+
+def large(bench: Bench) -> list[Row]:
+    """A million triangles to 5,000 faces of each kind."""
+    rows = []
+    for name in ("nefertiti", "spot"):
+        path = _large_input(bench, name)
+        for kind in ("triangles", "quads"):
+            output = bench.out / f"large_{name}_{kind}.obj"
+            arguments = ("--faces", LARGE_FACES, "--kind", kind, "--threads", 1)
+            done, report = bench.program("remesh", path, output, *arguments)
+            command = f"orbflow remesh {path} out.obj {' '.join(map(str, arguments))}"
+            if not done.ok:
+                rows.append(failure(name, done, command))
+                continue
+            found = bench.quality.read_mesh(output)
+            rows.append(
+                {"mesh": name, "kind": kind, "ok": True, "faces": found.n_faces}
+                | _cost(done, report)
+            )
+            _say(rows[-1], "kind", "faces", "cpu_s", "peak_mb")
+    return rows
+
+
+def _large_input(bench: Bench, name: str) -> Path:
+    path = bench.out / "inputs" / f"{name}_large.obj"
+    if not path.exists():
+        source = bench.triangles_of(bench.dev / f"{name}.obj")
+        write_obj(path, *resized(*source, LARGE_TRIANGLES))
+    return path
+
+
+def identity(bench: Bench) -> list[Row]:
+    """Runs each command twice on one thread and once on two and compares every byte written."""
+    meshes = [bench.dev / f"{name}.obj" for name in ("spot", "koala", "cad_shaft", "two_parts")]
+    cases = [
+        (path, kind, n) for path in meshes for kind, n in (("triangles", 6000), ("quads", 2000))
+    ]
+    cases.append((made(bench, "spot", 50_000), "quads", 5000))
+    return [_compared(bench, *case) for case in cases]
+
+
+def _compared(bench: Bench, path: Path, kind: str, n_faces: int) -> Row:
+    written: list[tuple[bytes, bytes]] = []
+    for n_threads in (1, 1, 2):
+        mesh, sphere = bench.out / "same.obj", bench.out / "same_sphere.obj"
+        arguments = ("--faces", n_faces, "--kind", kind, "--threads", n_threads, "--seed", 7)
+        done, _ = bench.program("remesh", path, mesh, *arguments, "--sphere", sphere)
+        if not done.ok:
+            command = f"orbflow remesh {path} out.obj {' '.join(map(str, arguments))}"
+            return failure(path.stem, done, command) | {"kind": kind}
+        written.append((mesh.read_bytes(), sphere.read_bytes()))
+    row = {
+        "mesh": path.stem,
+        "kind": kind,
+        "n_asked": n_faces,
+        "ok": True,
+        "twice": written[0] == written[1],
+        "two_threads": written[0] == written[2],
+        "n_bytes": sum(map(len, written[0])),
+    }
+    _say(row, "kind", "twice", "two_threads")
+    return row
+
+
+def _say(row: Row, *names: str) -> None:
+    shown = [f"{name} {_short(row[name])}" for name in names if row.get(name) is not None]
+    print(f"  {row['mesh']}: {', '.join(shown)}", flush=True)
+
+
+def _short(value: object) -> str:
+    return f"{value:.4g}" if isinstance(value, float | np.floating) else str(value)

@@ -1,0 +1,138 @@
+"""Writes what was measured as Markdown."""
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from bars import Results, bars
+from bench import Row, median
+
+TRIANGLES = (
+    ("triangles", "triangles", "d"),
+    ("chamfer_pct", "mean distance %", ".4f"),
+    ("isotropic_chamfer_pct", "isotropic's", ".4f"),
+    ("chamfer_ratio", "ratio", ".2f"),
+    ("hausdorff_pct", "Hausdorff %", ".2f"),
+    ("f1_at_0.5_pct", "F1 at 0.5 %", ".2f"),
+    ("edge_cv", "edge CV", ".3f"),
+    ("triangle_angle_mean_min", "mean min angle", ".1f"),
+    ("self_intersecting_pct", "crossing %", ".3f"),
+    ("cpu_s", "CPU s", ".2f"),
+    ("isotropic_cpu_s", "isotropic's", ".2f"),
+)
+QUADS = (
+    ("faces", "quads", "d"),
+    ("chamfer_pct", "mean distance %", ".4f"),
+    ("instant_meshes_chamfer_pct", "Instant Meshes'", ".4f"),
+    ("quadriflow_chamfer_pct", "QuadriFlow's", ".4f"),
+    ("hausdorff_pct", "Hausdorff %", ".2f"),
+    ("f1_at_1_pct", "F1 at 1 %", ".2f"),
+    ("edge_cv", "edge CV", ".3f"),
+    ("jacobian_mean", "scaled Jacobian", ".3f"),
+    ("self_intersecting_pct", "crossing %", ".3f"),
+    ("alignment_deg", "alignment °", ".1f"),
+    ("irregular_pct", "irregular %", ".2f"),
+    ("loop_edges_pct", "loop edges %", ".0f"),
+    ("spiral_pct", "spiral %", ".0f"),
+)
+WHOLE = (
+    ("input_triangles", "input triangles", "d"),
+    ("cpu_s", "Orbflow, whole process, CPU s", ".2f"),
+    ("instant_meshes_s", "Instant Meshes, algorithm alone", ".2f"),
+    ("quadriflow_s", "QuadriFlow, algorithm alone", ".2f"),
+    ("peak_mb", "our peak MB", ".0f"),
+)
+COST = (
+    ("n_vertices", "vertices", "d"),
+    ("cpu_s", "CPU s", ".2f"),
+    ("energy", "energy", ".3f"),
+    ("n_relaxations", "relaxations", "d"),
+    ("peak_mb", "peak MB", ".0f"),
+    ("instant_meshes_s", "Instant Meshes' whole run, CPU s", ".2f"),
+)
+THREADS = (
+    ("embed_1_s", "embedding, 1 thread, s", ".2f"),
+    ("embed_2_s", "2 threads, s", ".2f"),
+    ("ratio", "ratio", ".2f"),
+    ("whole_ratio", "ratio of the whole process", ".2f"),
+)
+LARGE = (
+    ("kind", "kind", "s"),
+    ("faces", "faces", "d"),
+    ("cpu_s", "CPU s", ".1f"),
+    ("wall_s", "wall s", ".1f"),
+    ("peak_mb", "peak MB", ".0f"),
+)
+
+Columns = Sequence[tuple[str, str, str]]
+
+
+def table(rows: Sequence[Row], columns: Columns, with_median: bool = True) -> str:
+    """One line a mesh, failures in words, medians at the end."""
+    head = ["mesh", *(title for _, title, _ in columns)]
+    lines = [_line(head), "|" + "---|" * len(head)]
+    for row in rows:
+        if row.get("ok", True):
+            lines.append(_line([row["mesh"], *(_cell(row.get(k), f) for k, _, f in columns)]))
+        else:
+            lines.append(_line([row["mesh"], f"failed ({row['code']}): {row['error']}"]))
+    if with_median:
+        numbers = [
+            _cell(median(rows, key), f.replace("d", ".0f")) if f != "s" else ""
+            for key, _, f in columns
+        ]
+        lines.append(_line(["**median**", *numbers]))
+    return "\n".join(lines)
+
+
+def _line(cells: Sequence[str]) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+def _cell(value: object, form: str) -> str:
+    return "–" if value is None or value != value else format(value, form)
+
+
+def steps_table(rows: Sequence[Row]) -> str:
+    """Median CPU seconds of every step."""
+    done = [row["steps_s"] for row in rows if row.get("ok") and "steps_s" in row]
+    names = list(dict.fromkeys(name for steps in done for name in steps))
+    cells = [(name, median(done, name)) for name in names]
+    lines = [_line(["step", "median CPU s"]), "|---|---|"]
+    return "\n".join([*lines, *(_line([name, f"{value:.3f}"]) for name, value in cells)])
+
+
+def summary(results: Results) -> str:
+    """Every bar with what was measured."""
+    lines = [_line(["what", "bar", "measured", "met"]), "|---|---|---|---|"]
+    for bar in bars(results):
+        met = {True: "yes", False: "**no**", None: "not measured"}[bar.met]
+        lines.append(_line([bar.what, bar.bar, bar.measured, met]))
+    return "\n".join(lines)
+
+
+def tables(results: Results) -> dict[str, str]:
+    """The Markdown of every part that was measured, by the name of its marker."""
+    made = {"summary": summary(results)}
+    if rows := results.get("cost"):
+        made["cost"] = table(rows, COST, with_median=False)
+    if rows := results.get("threads"):
+        made["threads"] = table(rows, THREADS)
+    if rows := results.get("triangles"):
+        made["triangles"] = table(rows, TRIANGLES)
+    if rows := results.get("quads"):
+        made["quads"] = table(rows, QUADS)
+        made["whole"] = table(rows, WHOLE)
+        made["steps"] = steps_table(rows)
+    if rows := results.get("large"):
+        made["large"] = table(rows, LARGE, with_median=False)
+    return made
+
+
+def write(path: Path, parts: dict[str, str]) -> None:
+    """Puts each part between its markers `<!-- measured: NAME -->` and `<!-- end -->`."""
+    text = path.read_text()
+    for name, part in parts.items():
+        pattern = re.compile(rf"(<!-- measured: {name} -->\n).*?(<!-- end -->)", re.DOTALL)
+        text = pattern.sub(lambda found, part=part: f"{found[1]}\n{part}\n\n{found[2]}", text)
+    path.write_text(text)
