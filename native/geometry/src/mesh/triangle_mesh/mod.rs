@@ -1,10 +1,14 @@
 //! Oriented manifold triangle meshes, with or without border.
 
+mod build;
+
 use glam::DVec3;
-use thiserror::Error;
 
 use super::polygon_mesh::MAX_ELEMENTS;
 use super::{FaceId, HalfedgeId, Id, VertexId};
+
+pub use build::TriangleMeshError;
+use build::{check_corners, match_twins};
 
 const BORDER: u32 = u32::MAX;
 
@@ -21,71 +25,6 @@ pub struct TriangleMesh {
     /// One outgoing halfedge per vertex; at a border the one without a twin, where the
     /// counter-clockwise fan starts.
     outgoing: Vec<HalfedgeId>,
-}
-
-/// Why arrays do not make a [`TriangleMesh`].
-#[derive(Clone, PartialEq, Debug, Error)]
-pub enum TriangleMeshError {
-    /// A coordinate is NaN or infinite.
-    #[error("vertex {vertex} has a coordinate that is not finite")]
-    NotFinite {
-        /// The first such vertex.
-        vertex: VertexId,
-    },
-    /// A face names a vertex that does not exist.
-    #[error("face {face} names vertex {vertex}, but there are {n_vertices} vertices")]
-    IndexOutOfRange {
-        /// The first such face.
-        face: FaceId,
-        /// What it names.
-        vertex: VertexId,
-        /// How many vertices there are.
-        n_vertices: usize,
-    },
-    /// Two corners of a face are the same vertex.
-    #[error("face {face} has vertex {vertex} twice")]
-    RepeatedCorner {
-        /// The first such face.
-        face: FaceId,
-        /// The vertex.
-        vertex: VertexId,
-    },
-    /// More than two faces at an edge.
-    #[error("{n_faces} faces meet at the edge between vertices {a} and {b}; at most 2 can")]
-    NonManifoldEdge {
-        /// How many faces meet.
-        n_faces: usize,
-        /// One end.
-        a: VertexId,
-        /// The other end.
-        b: VertexId,
-    },
-    /// Two faces run through their common edge in the same direction.
-    #[error("two faces run through the edge between vertices {a} and {b} in the same direction")]
-    Orientation {
-        /// One end.
-        a: VertexId,
-        /// The other end.
-        b: VertexId,
-    },
-    /// The faces at a vertex form more than one fan.
-    #[error("the faces at vertex {vertex} form more than one fan")]
-    NonManifoldVertex {
-        /// The first such vertex.
-        vertex: VertexId,
-    },
-    /// A vertex has no face.
-    #[error("vertex {vertex} has no face")]
-    IsolatedVertex {
-        /// The first such vertex.
-        vertex: VertexId,
-    },
-    /// More elements than 32-bit ids can name.
-    #[error("{n} elements; at most {MAX_ELEMENTS} can be handled")]
-    TooLarge {
-        /// How many there are.
-        n: usize,
-    },
 }
 
 impl TriangleMesh {
@@ -377,139 +316,5 @@ impl Iterator for Outgoing<'_> {
     }
 }
 
-fn check_corners(faces: &[[VertexId; 3]], n_vertices: usize) -> Result<(), TriangleMeshError> {
-    for (i, corners) in faces.iter().enumerate() {
-        let face = FaceId::from_index(i);
-        if let Some(&vertex) = corners.iter().find(|v| v.index() >= n_vertices) {
-            return Err(TriangleMeshError::IndexOutOfRange {
-                face,
-                vertex,
-                n_vertices,
-            });
-        }
-        let [a, b, c] = *corners;
-        if a == b || b == c || c == a {
-            let vertex = if b == c { b } else { a };
-            return Err(TriangleMeshError::RepeatedCorner { face, vertex });
-        }
-    }
-    Ok(())
-}
-
-/// Pairs the halfedges of each edge, by sorting them on their unordered ends.
-fn match_twins(faces: &[[VertexId; 3]]) -> Result<Vec<u32>, TriangleMeshError> {
-    let ends = |h: u32| {
-        let [f, i] = [(h / 3) as usize, (h % 3) as usize];
-        (faces[f][i], faces[f][(i + 1) % 3])
-    };
-    let mut order: Vec<(u64, u32)> = (0..3 * faces.len() as u32)
-        .map(|h| {
-            let (a, b) = ends(h);
-            (u64::from(a.min(b).0) << 32 | u64::from(a.max(b).0), h)
-        })
-        .collect();
-    order.sort_unstable();
-    let mut twins = vec![BORDER; order.len()];
-    for run in order.chunk_by(|x, y| x.0 == y.0) {
-        let (a, b) = ends(run[0].1);
-        match *run {
-            [_] => {}
-            [(_, g), (_, h)] if ends(g) != ends(h) => {
-                twins[g as usize] = h;
-                twins[h as usize] = g;
-            }
-            [_, _] => return Err(TriangleMeshError::Orientation { a, b }),
-            _ => {
-                return Err(TriangleMeshError::NonManifoldEdge {
-                    n_faces: run.len(),
-                    a,
-                    b,
-                });
-            }
-        }
-    }
-    Ok(twins)
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn ids<const N: usize>(faces: [[u32; 3]; N]) -> Vec<[VertexId; 3]> {
-        faces.into_iter().map(|f| f.map(VertexId)).collect()
-    }
-
-    fn points(n: usize) -> Vec<DVec3> {
-        (0..n)
-            .map(|i| DVec3::new(i as f64, (i * i) as f64, (i % 2) as f64))
-            .collect()
-    }
-
-    fn tetrahedron() -> TriangleMesh {
-        let faces = ids([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]);
-        TriangleMesh::new(points(4), faces).unwrap()
-    }
-
-    #[test]
-    fn a_tetrahedron_is_closed_and_every_ring_has_three_neighbours() {
-        let mesh = tetrahedron();
-        assert!(mesh.is_closed() && mesh.border_loops().is_empty());
-        assert_eq!((mesh.euler_number(), mesh.face_components().1), (2, 1));
-        for v in mesh.vertex_ids() {
-            let ring: Vec<_> = mesh.neighbours(v).collect();
-            assert_eq!(ring.len(), 3);
-            for h in mesh.outgoing(v) {
-                assert_eq!(mesh.origin(h), v);
-                assert_eq!(mesh.twin(mesh.twin(h).unwrap()), Some(h));
-            }
-        }
-    }
-
-    #[test]
-    fn consecutive_neighbours_are_the_faces_at_the_vertex_counter_clockwise() {
-        let mesh = tetrahedron();
-        let ring: Vec<_> = mesh.neighbours(VertexId(0)).collect();
-        for i in 0..3 {
-            let wanted = [VertexId(0), ring[i], ring[(i + 1) % 3]];
-            let found = mesh
-                .faces()
-                .iter()
-                .any(|f| (0..3).any(|k| [f[k], f[(k + 1) % 3], f[(k + 2) % 3]] == wanted));
-            assert!(found, "{wanted:?}");
-        }
-    }
-
-    #[test]
-    fn a_border_ring_starts_and_ends_on_the_border() {
-        let mesh = TriangleMesh::new(points(4), ids([[0, 1, 2], [0, 2, 3]])).unwrap();
-        let ring: Vec<_> = mesh.neighbours(VertexId(0)).collect();
-        assert_eq!(ring, [1, 2, 3].map(VertexId));
-        assert_eq!(mesh.valence(VertexId(0)), 3);
-        assert_eq!(mesh.border_loops().len(), 1);
-        assert_eq!(mesh.border_loops()[0].len(), 4);
-        assert_eq!(mesh.euler_number(), 1);
-    }
-
-    #[test]
-    fn broken_meshes_are_refused_with_numbers() {
-        let message = |n, faces| TriangleMesh::new(points(n), faces).unwrap_err().to_string();
-        assert_eq!(
-            message(5, ids([[0, 1, 2], [1, 0, 3], [0, 1, 4]])),
-            "3 faces meet at the edge between vertices 0 and 1; at most 2 can"
-        );
-        assert_eq!(
-            message(4, ids([[0, 1, 2], [0, 1, 3]])),
-            "two faces run through the edge between vertices 0 and 1 in the same direction"
-        );
-        assert_eq!(
-            message(5, ids([[0, 1, 2], [0, 3, 4]])),
-            "the faces at vertex 0 form more than one fan"
-        );
-        assert_eq!(message(4, ids([[0, 1, 2]])), "vertex 3 has no face");
-        assert_eq!(message(3, ids([[0, 1, 1]])), "face 0 has vertex 1 twice");
-        assert_eq!(
-            message(3, ids([[0, 1, 5]])),
-            "face 0 names vertex 5, but there are 3 vertices"
-        );
-    }
-}
+mod tests;

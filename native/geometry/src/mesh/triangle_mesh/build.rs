@@ -1,0 +1,130 @@
+//! The checks at the door of a triangle mesh.
+
+use thiserror::Error;
+
+use super::super::polygon_mesh::MAX_ELEMENTS;
+use super::super::{FaceId, Id, VertexId};
+use super::BORDER;
+
+/// Why arrays do not make a [`TriangleMesh`].
+#[derive(Clone, PartialEq, Debug, Error)]
+pub enum TriangleMeshError {
+    /// A coordinate is NaN or infinite.
+    #[error("vertex {vertex} has a coordinate that is not finite")]
+    NotFinite {
+        /// The first such vertex.
+        vertex: VertexId,
+    },
+    /// A face names a vertex that does not exist.
+    #[error("face {face} names vertex {vertex}, but there are {n_vertices} vertices")]
+    IndexOutOfRange {
+        /// The first such face.
+        face: FaceId,
+        /// What it names.
+        vertex: VertexId,
+        /// How many vertices there are.
+        n_vertices: usize,
+    },
+    /// Two corners of a face are the same vertex.
+    #[error("face {face} has vertex {vertex} twice")]
+    RepeatedCorner {
+        /// The first such face.
+        face: FaceId,
+        /// The vertex.
+        vertex: VertexId,
+    },
+    /// More than two faces at an edge.
+    #[error("{n_faces} faces meet at the edge between vertices {a} and {b}; at most 2 can")]
+    NonManifoldEdge {
+        /// How many faces meet.
+        n_faces: usize,
+        /// One end.
+        a: VertexId,
+        /// The other end.
+        b: VertexId,
+    },
+    /// Two faces run through their common edge in the same direction.
+    #[error("two faces run through the edge between vertices {a} and {b} in the same direction")]
+    Orientation {
+        /// One end.
+        a: VertexId,
+        /// The other end.
+        b: VertexId,
+    },
+    /// The faces at a vertex form more than one fan.
+    #[error("the faces at vertex {vertex} form more than one fan")]
+    NonManifoldVertex {
+        /// The first such vertex.
+        vertex: VertexId,
+    },
+    /// A vertex has no face.
+    #[error("vertex {vertex} has no face")]
+    IsolatedVertex {
+        /// The first such vertex.
+        vertex: VertexId,
+    },
+    /// More elements than 32-bit ids can name.
+    #[error("{n} elements; at most {MAX_ELEMENTS} can be handled")]
+    TooLarge {
+        /// How many there are.
+        n: usize,
+    },
+}
+
+/// Checks that corners exist and differ within their face.
+pub(super) fn check_corners(
+    faces: &[[VertexId; 3]],
+    n_vertices: usize,
+) -> Result<(), TriangleMeshError> {
+    for (i, corners) in faces.iter().enumerate() {
+        let face = FaceId::from_index(i);
+        if let Some(&vertex) = corners.iter().find(|v| v.index() >= n_vertices) {
+            return Err(TriangleMeshError::IndexOutOfRange {
+                face,
+                vertex,
+                n_vertices,
+            });
+        }
+        let [a, b, c] = *corners;
+        if a == b || b == c || c == a {
+            let vertex = if b == c { b } else { a };
+            return Err(TriangleMeshError::RepeatedCorner { face, vertex });
+        }
+    }
+    Ok(())
+}
+
+/// Pairs the halfedges of each edge, by sorting them on their unordered ends.
+pub(super) fn match_twins(faces: &[[VertexId; 3]]) -> Result<Vec<u32>, TriangleMeshError> {
+    let ends = |h: u32| {
+        let [f, i] = [(h / 3) as usize, (h % 3) as usize];
+        (faces[f][i], faces[f][(i + 1) % 3])
+    };
+    let mut order: Vec<(u64, u32)> = (0..3 * faces.len() as u32)
+        .map(|h| {
+            let (a, b) = ends(h);
+            (u64::from(a.min(b).0) << 32 | u64::from(a.max(b).0), h)
+        })
+        .collect();
+    order.sort_unstable();
+    let mut twins = vec![BORDER; order.len()];
+    for run in order.chunk_by(|x, y| x.0 == y.0) {
+        let (a, b) = ends(run[0].1);
+        match *run {
+            [_] => {}
+            [(_, g), (_, h)] if ends(g) != ends(h) => {
+                twins[g as usize] = h;
+                twins[h as usize] = g;
+            }
+            [_, _] => return Err(TriangleMeshError::Orientation { a, b }),
+            _ => {
+                return Err(TriangleMeshError::NonManifoldEdge {
+                    n_faces: run.len(),
+                    a,
+                    b,
+                });
+            }
+        }
+    }
+    Ok(twins)
+}
