@@ -8,15 +8,14 @@ const FEWEST_FACES: usize = 4;
 
 /// Flips edges until the worse of each two triangles is as good as it can be, and returns how many.
 ///
-/// Kept: the number of faces, and that both triangles are positive on the sphere. Edges for which
-/// `is_kept` holds stay. A flip always improves the sorted list of qualities, so this ends; the
+/// Kept: the number of faces, and that both triangles are positive on the sphere. Kept edges stay. A flip always improves the sorted list of qualities, so this ends; the
 /// number of passes is bounded all the same, since later ones find next to nothing.
-pub(super) fn flip_edges(sheet: &mut Sheet, is_kept: impl Fn(VertexId, VertexId) -> bool) -> usize {
+pub(super) fn flip_edges(sheet: &mut Sheet) -> usize {
     let mut n_flips = 0;
     for _ in 0..4 {
         let before = n_flips;
         for face in sheet.faces().ids() {
-            n_flips += usize::from(flip_one(sheet, face, &is_kept));
+            n_flips += usize::from(flip_one(sheet, face));
         }
         if n_flips == before {
             break;
@@ -26,11 +25,7 @@ pub(super) fn flip_edges(sheet: &mut Sheet, is_kept: impl Fn(VertexId, VertexId)
 }
 
 /// Flips the first edge of a triangle that gains by it.
-fn flip_one(
-    sheet: &mut Sheet,
-    left: FaceId,
-    is_kept: &impl Fn(VertexId, VertexId) -> bool,
-) -> bool {
+fn flip_one(sheet: &mut Sheet, left: FaceId) -> bool {
     for corner in 0..3 {
         let face = &sheet.faces()[left];
         if face.corners().len() != 3 {
@@ -38,7 +33,7 @@ fn flip_one(
         }
         let [a, b, c] = [0, 1, 2].map(|i| face.corner(corner, i));
         // Each edge is looked at from one side.
-        if a > b || is_kept(a, b) {
+        if a > b || sheet.is_kept(a, b) {
             continue;
         }
         if let Some((right, d)) = gain(sheet, left, [a, b, c]) {

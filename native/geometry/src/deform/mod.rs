@@ -4,8 +4,8 @@
 //! surface point*. From there on every vertex lives twice, in space and on the sphere:
 //!
 //! ```text
-//! place on the map ─▶ relax along the surface ─▶ lift onto the full-resolution target ─▶ straddle
-//!      locate              slide, flip                 closest point that agrees        least squares
+//! place on the map ─▶ relax, snap to sharp edges ─▶ lift onto the full-resolution target ─▶ straddle
+//!      locate           slide, flip, pin                  closest point that agrees        least squares
 //! ```
 //!
 //! A slide moves the sphere point along; one that would fold the primitive on the sphere is
@@ -14,10 +14,13 @@
 //!
 //! Not done here: choosing the primitive (`sphere`), and proving that faces do not cross in space.
 
+mod features;
 mod flips;
 mod project;
 mod relax;
+mod route;
 mod sheet;
+mod snap;
 mod straddle;
 mod target;
 #[cfg(test)]
@@ -73,6 +76,10 @@ pub struct Deformed {
 pub struct Report {
     /// How many edges were flipped.
     pub n_flips: usize,
+    /// How many vertices were to stand on sharp edges and corners.
+    pub n_feature_goals: usize,
+    /// How many of them do.
+    pub n_feature_vertices: usize,
     /// How many vertices could not slide in the last round without folding or spoiling a face.
     pub n_stuck: usize,
     /// How many vertices did not get all the way onto the full-resolution surface.
@@ -119,17 +126,18 @@ pub fn deform(
     check_primitive(primitive)?;
     let mut report = Report::default();
     let mut sheet = Sheet::new(map, vertex_normals(map.mesh()), primitive);
-    slide_and_flip(
-        &mut sheet,
-        settings,
-        &mut report,
-        &progress.part("", 0.0, 0.6),
-    )?;
+    let n = settings.n_relaxations;
+    slide_and_flip(&mut sheet, n, &mut report, &progress.part("", 0.0, 0.5))?;
+    let [n_goals, n_pinned] = snap::snap(&mut sheet, target, &progress.part("", 0.5, 0.6))?;
+    (report.n_feature_goals, report.n_feature_vertices) = (n_goals, n_pinned);
+    if n_goals > 0 {
+        slide_and_flip(&mut sheet, n / 2, &mut report, &progress.part("", 0.6, 0.7))?;
+    }
     let reach = sheet.mean_edge();
     report.n_unprojected = project::project(&mut sheet, target, reach);
     for round in 0..settings.n_straddles {
         progress.at(0.7 + 0.3 * round as f64 / settings.n_straddles as f64)?;
-        straddle::straddle(&mut sheet, target, [reach, settings.anchor], |_| false)?;
+        straddle::straddle(&mut sheet, target, [reach, settings.anchor])?;
     }
     let (mesh, sphere) = sheet.into_mesh();
     debug_assert_eq!(check_cover(&mesh, &sphere), Ok(()));
@@ -153,16 +161,15 @@ fn check_primitive(primitive: &PolygonMesh) -> Result<(), Error> {
 /// Rounds of sliding, with flips in between while there are triangles.
 fn slide_and_flip(
     sheet: &mut Sheet,
-    settings: &Settings,
+    n: usize,
     report: &mut Report,
     progress: &Progress,
 ) -> Result<(), Cancelled> {
-    let n = settings.n_relaxations;
     for round in 0..n {
         let [from, to] = [round, round + 1].map(|r| r as f64 / n as f64);
-        report.n_flips += flips::flip_edges(sheet, |_, _| false);
+        report.n_flips += flips::flip_edges(sheet);
         report.n_stuck = relax::relax(sheet, 1, &progress.part("", from, to))?;
     }
-    report.n_flips += flips::flip_edges(sheet, |_, _| false);
+    report.n_flips += flips::flip_edges(sheet);
     Ok(())
 }

@@ -10,7 +10,7 @@ use crate::mesh::{Id, VertexId};
 /// Shares of the way to the full-resolution surface that are tried.
 const SHARES: [f64; 3] = [1.0, 0.5, 0.25];
 
-/// Lifts every vertex to the closest point of the target that agrees with its normal, no farther
+/// Lifts every vertex that is not pinned to the closest point of the target that agrees with its normal, no farther
 /// than `reach`, and returns how many found none or would have spoiled a face on the whole way.
 pub(super) fn project(sheet: &mut Sheet, target: &Target, reach: f64) -> usize {
     let feet: Vec<Option<DVec3>> = (0..sheet.n_vertices())
@@ -23,6 +23,9 @@ pub(super) fn project(sheet: &mut Sheet, target: &Target, reach: f64) -> usize {
         .collect();
     let mut n_missed = 0;
     for (v, foot) in sheet.vertex_ids().zip(feet) {
+        if sheet.is_pinned(v) {
+            continue;
+        }
         let reached = foot.is_some_and(|foot| lift_towards(sheet, v, foot, 0.2) == Some(0));
         n_missed += usize::from(!reached);
     }

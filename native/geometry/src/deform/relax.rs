@@ -13,7 +13,7 @@ const GUARDED_QUALITY: f64 = 0.35;
 /// limbs push each other into slivers, at 0.5 sizes even out too slowly.
 const SIZE_WISH: f64 = 0.8;
 
-/// Moves every vertex `n_rounds` times to where its faces would be regular polygons of equal size.
+/// Moves every vertex that is not pinned `n_rounds` times to where its faces would be regular polygons of equal size.
 ///
 /// Each face pulls its corners towards the regular polygon of its own centre and turn (shape
 /// matching, Müller et al. 2005); a vertex goes to the mean of its faces' wishes, along the surface.
@@ -29,6 +29,9 @@ pub(super) fn relax(
         let radius = wanted_radius(sheet);
         n_refused = 0;
         for v in sheet.vertex_ids() {
+            if sheet.is_pinned(v) {
+                continue;
+            }
             let step = wish(sheet, v, radius);
             if !slide(sheet, v, step) && !slide(sheet, v, step * 0.5) {
                 n_refused += 1;

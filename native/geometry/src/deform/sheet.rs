@@ -1,5 +1,7 @@
 //! The moving mesh: faces whose vertices live on the surface and on the sphere at once.
 
+use std::collections::HashSet;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -57,6 +59,9 @@ pub(super) struct Sheet<'a> {
     faces: FaceMap<Face>,
     rings: VertexMap<Vec<FaceId>>,
     points: VertexMap<Point>,
+    pinned: VertexMap<bool>,
+    /// Edges that no flip takes away, smaller end first.
+    kept: HashSet<[VertexId; 2]>,
 }
 
 impl<'a> Sheet<'a> {
@@ -77,12 +82,15 @@ impl<'a> Sheet<'a> {
             }
         });
         let points = VertexMap::from_vec(places.collect());
+        let pinned = VertexMap::filled(points.len(), false);
         Self {
             map,
             surface_normals: normals,
             faces,
             rings,
             points,
+            pinned,
+            kept: HashSet::new(),
         }
     }
 
@@ -109,6 +117,29 @@ impl<'a> Sheet<'a> {
 
     pub fn position(&self, vertex: VertexId) -> DVec3 {
         self.points[vertex].position
+    }
+
+    /// Makes a vertex stay where it is led.
+    pub fn pin(&mut self, vertex: VertexId) {
+        self.pinned[vertex] = true;
+    }
+
+    pub fn unpin(&mut self, vertex: VertexId) {
+        self.pinned[vertex] = false;
+    }
+
+    pub fn is_pinned(&self, vertex: VertexId) -> bool {
+        self.pinned[vertex]
+    }
+
+    /// Saves an edge from flips.
+    pub fn keep_edge(&mut self, a: VertexId, b: VertexId) {
+        self.kept.insert([a.min(b), a.max(b)]);
+    }
+
+    /// Whether an edge is saved from flips.
+    pub fn is_kept(&self, a: VertexId, b: VertexId) -> bool {
+        self.kept.contains(&[a.min(b), a.max(b)])
     }
 
     /// The face on the left of the edge from `a` to `b`.

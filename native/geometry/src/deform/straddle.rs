@@ -36,20 +36,19 @@ struct Sample {
 /// Lifts vertices along their normals to the least squares fit; `anchor` holds them back.
 ///
 /// Anchors are relative to the weight of an average vertex: at 0 single vertices jump where the
-/// samples say little, at 1 half of the gain is lost. Vertices for which `is_fixed` holds stay, and
+/// samples say little, at 1 half of the gain is lost. Pinned vertices stay, and
 /// none is lifted farther than `reach` or so that a face is spoiled.
 pub(super) fn straddle(
     sheet: &mut Sheet,
     target: &Target,
     [reach, anchor]: [f64; 2],
-    is_fixed: impl Fn(VertexId) -> bool,
 ) -> Result<(), NotPositiveDefinite> {
     let samples: Vec<Sample> = triangles(sheet)
         .par_iter()
         .flat_map_iter(|&corners| samples(sheet, target, corners, reach))
         .collect();
     let normals = vertex_normals(sheet);
-    let heights = heights(&samples, &normals, anchor, is_fixed)?;
+    let heights = heights(&samples, &normals, anchor, |v| sheet.is_pinned(v))?;
     for v in sheet.vertex_ids() {
         let height = heights[v.index()].clamp(-reach, reach);
         let wanted = sheet.position(v) + normals[v] * height;

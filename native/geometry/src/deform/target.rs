@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 
+use super::features::{FeatureLine, feature_lines};
 use crate::measure::face_normals;
-use crate::mesh::{FaceMap, TriangleMesh};
+use crate::mesh::{FaceMap, TriangleMesh, VertexId};
 use crate::nearest::{Bvh, Closest};
 
 /// The full-resolution surface with a tree over its faces and their normals.
@@ -12,14 +13,27 @@ pub struct Target {
     mesh: TriangleMesh,
     bvh: Bvh,
     normals: FaceMap<DVec3>,
+    features: Vec<FeatureLine>,
 }
 
 impl Target {
-    /// Prepares a surface. It must lie in the same coordinates as the sphere map's.
+    /// Prepares a surface. It must lie in the same coordinates as the sphere map's. Edges at which
+    /// it turns by more than 40° count as sharp.
     pub fn new(mesh: TriangleMesh) -> Self {
+        Self::with_crease_angle(mesh, 40f64.to_radians())
+    }
+
+    /// The same with another angle (radians) from which on edges count as sharp.
+    pub fn with_crease_angle(mesh: TriangleMesh, crease_angle: f64) -> Self {
         let bvh = Bvh::of_mesh(&mesh);
         let normals = face_normals(&mesh);
-        Self { mesh, bvh, normals }
+        let features = feature_lines(&mesh, &normals, crease_angle);
+        Self {
+            mesh,
+            bvh,
+            normals,
+            features,
+        }
     }
 
     /// The surface.
@@ -30,6 +44,17 @@ impl Target {
     /// The tree over its faces.
     pub fn bvh(&self) -> &Bvh {
         &self.bvh
+    }
+
+    /// The lines of sharp edges, longest first.
+    pub(super) fn features(&self) -> &[FeatureLine] {
+        &self.features
+    }
+
+    /// The mean of the normals of the faces at a vertex.
+    pub(super) fn vertex_normal(&self, vertex: VertexId) -> DVec3 {
+        let normals = self.mesh.outgoing(vertex).map(|h| self.normals[h.face()]);
+        normals.sum::<DVec3>().normalize_or_zero()
     }
 
     /// The closest point whose face agrees with a normal, up to a distance.

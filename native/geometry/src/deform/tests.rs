@@ -113,3 +113,35 @@ fn what_is_no_sphere_is_refused() {
     let error = deform(&ball, &Progress::silent(token)).unwrap_err();
     assert_eq!(error, Error::Cancelled(Cancelled));
 }
+
+#[test]
+fn a_box_keeps_its_corners_and_edges() {
+    let mesh = shapes::cuboid(16);
+    let corners: Vec<_> = (0..8u32)
+        .map(|i| {
+            let sign = |bit: u32| f64::from(i >> bit & 1) * 2.0 - 1.0;
+            DVec3::new(0.5 * sign(0), 0.4 * sign(1), 0.3 * sign(2))
+        })
+        .collect();
+    let (map, target) = (radial_map(&mesh), Target::new(mesh));
+    for primitive in [icosphere(9), quad_sphere([9, 9, 9])] {
+        let result = run(&map, &primitive, &target);
+        let points = result.mesh.positions();
+        for corner in &corners {
+            assert!(
+                points.iter().any(|p| p.distance(*corner) < 1e-9),
+                "{corner}"
+            );
+        }
+        let Report {
+            n_feature_goals,
+            n_feature_vertices,
+            ..
+        } = result.report;
+        assert!(
+            10 * n_feature_vertices >= 9 * n_feature_goals,
+            "{:?}",
+            result.report
+        );
+    }
+}

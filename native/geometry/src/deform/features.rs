@@ -1,0 +1,210 @@
+//! Sharp edges of a surface, chained into lines that end in corners.
+
+use glam::DVec3;
+
+use crate::mesh::{FaceMap, TriangleMesh, VertexId, VertexMap};
+
+/// Cosine of the turn at which a line has a corner even without a third line: 50°.
+const CORNER_COSINE: f64 = 0.64;
+
+/// A chain of sharp edges from corner to corner, or around.
+#[derive(Clone, PartialEq, Debug)]
+pub(super) struct FeatureLine {
+    /// The vertices in order; a closed line ends with the one it starts with.
+    pub vertices: Vec<VertexId>,
+    points: Vec<DVec3>,
+    /// Arc length from the start to each point.
+    lengths: Vec<f64>,
+}
+
+impl FeatureLine {
+    fn new(mesh: &TriangleMesh, vertices: Vec<VertexId>) -> Self {
+        let points: Vec<DVec3> = vertices.iter().map(|&v| mesh.position(v)).collect();
+        let mut lengths = vec![0.0];
+        for (i, pair) in points.windows(2).enumerate() {
+            lengths.push(lengths[i] + pair[0].distance(pair[1]));
+        }
+        Self {
+            vertices,
+            points,
+            lengths,
+        }
+    }
+
+    pub fn length(&self) -> f64 {
+        *self.lengths.last().expect("a line starts somewhere")
+    }
+
+    pub fn is_closed(&self) -> bool {
+        self.vertices.first() == self.vertices.last()
+    }
+
+    pub fn segments(&self) -> impl Iterator<Item = [DVec3; 2]> {
+        self.points.windows(2).map(|pair| [pair[0], pair[1]])
+    }
+
+    /// The point at an arc length from the start, and the vertex before it.
+    pub fn at(&self, length: f64) -> (DVec3, VertexId) {
+        let after = self.lengths.partition_point(|&l| l <= length);
+        let i = after.clamp(1, self.points.len() - 1) - 1;
+        let step = self.lengths[i + 1] - self.lengths[i];
+        let share = ((length - self.lengths[i]) / step.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        (
+            self.points[i].lerp(self.points[i + 1], share),
+            self.vertices[i],
+        )
+    }
+}
+
+/// Chains the edges at which face normals turn by more than `angle`, longest line first.
+///
+/// Faces without area make no sharp edge: they have no normal to turn.
+pub(super) fn feature_lines(
+    mesh: &TriangleMesh,
+    normals: &FaceMap<DVec3>,
+    angle: f64,
+) -> Vec<FeatureLine> {
+    let neighbours = sharp_neighbours(mesh, normals, angle.cos());
+    let is_corner = |v: VertexId| match neighbours[v][..] {
+        [] => false,
+        [a, b] => {
+            let way = |to: VertexId| (mesh.position(to) - mesh.position(v)).normalize_or_zero();
+            -way(a).dot(way(b)) < CORNER_COSINE
+        }
+        _ => true,
+    };
+    let mut walker = Walker {
+        neighbours: &neighbours,
+        seen: VertexMap::filled(mesh.n_vertices(), 0),
+    };
+    let mut lines = Vec::new();
+    for v in mesh.vertex_ids().filter(|&v| is_corner(v)) {
+        for i in 0..neighbours[v].len() {
+            lines.extend(walker.walk(v, i, is_corner));
+        }
+    }
+    for v in mesh.vertex_ids().filter(|&v| !neighbours[v].is_empty()) {
+        lines.extend(walker.walk(v, 0, |u| u == v));
+    }
+    let mut lines: Vec<_> = lines
+        .into_iter()
+        .map(|line| FeatureLine::new(mesh, line))
+        .collect();
+    lines.sort_by(|a, b| b.length().total_cmp(&a.length()));
+    lines
+}
+
+fn sharp_neighbours(
+    mesh: &TriangleMesh,
+    normals: &FaceMap<DVec3>,
+    cosine: f64,
+) -> VertexMap<Vec<VertexId>> {
+    let mut neighbours = VertexMap::filled(mesh.n_vertices(), Vec::new());
+    for h in mesh.halfedge_ids() {
+        let Some(twin) = mesh.twin(h).filter(|twin| h < *twin) else {
+            continue;
+        };
+        let [m, n] = [normals[h.face()], normals[twin.face()]];
+        if m != DVec3::ZERO && n != DVec3::ZERO && m.dot(n) < cosine {
+            neighbours[mesh.origin(h)].push(mesh.target(h));
+            neighbours[mesh.target(h)].push(mesh.origin(h));
+        }
+    }
+    neighbours
+}
+
+/// Walks along sharp edges, each once. A bit per neighbour says which edges were walked.
+struct Walker<'a> {
+    neighbours: &'a VertexMap<Vec<VertexId>>,
+    seen: VertexMap<u64>,
+}
+
+impl Walker<'_> {
+    /// The line that leaves `start` towards its i-th neighbour, up to a vertex that `ends` it.
+    fn walk(
+        &mut self,
+        start: VertexId,
+        i: usize,
+        ends: impl Fn(VertexId) -> bool,
+    ) -> Option<Vec<VertexId>> {
+        let mut line = vec![start];
+        let mut way = Some(i);
+        let mut at = start;
+        while let Some(i) = way.filter(|&i| self.mark(at, i)) {
+            let next = self.neighbours[at][i];
+            let back = self.neighbours[next].iter().position(|&v| v == at);
+            self.mark(next, back.unwrap_or(0));
+            line.push(next);
+            at = next;
+            way = self.neighbours[at]
+                .iter()
+                .position(|&v| v != line[line.len() - 2]);
+            if ends(at) {
+                break;
+            }
+        }
+        (line.len() > 1).then_some(line)
+    }
+
+    /// Marks an edge as walked and says whether it had not been.
+    fn mark(&mut self, vertex: VertexId, i: usize) -> bool {
+        // Beyond 64 sharp edges at a vertex no line is worth following.
+        let bit = 1u64.checked_shl(i as u32).unwrap_or(0);
+        let is_new = self.seen[vertex] & bit == 0 && bit != 0;
+        self.seen[vertex] |= bit;
+        is_new
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::face_normals;
+    use crate::shapes;
+
+    fn lines(mesh: &TriangleMesh) -> Vec<FeatureLine> {
+        feature_lines(mesh, &face_normals(mesh), 40f64.to_radians())
+    }
+
+    #[test]
+    fn a_box_has_twelve_lines_between_eight_corners() {
+        let lines = lines(&shapes::cuboid(6));
+        assert_eq!(lines.len(), 12);
+        let total: f64 = lines.iter().map(FeatureLine::length).sum();
+        assert!((total - 4.0 * (1.0 + 0.8 + 0.6)).abs() < 1e-12);
+        assert!(
+            lines
+                .iter()
+                .all(|line| line.vertices.len() == 7 && !line.is_closed())
+        );
+        let mut ends: Vec<_> = lines
+            .iter()
+            .flat_map(|l| [l.vertices[0], *l.vertices.last().unwrap()])
+            .collect();
+        ends.sort_unstable();
+        ends.dedup();
+        assert_eq!(ends.len(), 8);
+    }
+
+    #[test]
+    fn smooth_bodies_have_none_and_a_rim_closes() {
+        assert_eq!(lines(&shapes::sphere(12)), []);
+        let rod = shapes::mapped_cube(12, |p| {
+            let round = DVec3::new(p.x, p.y, 0.0);
+            let size = p.x.abs().max(p.y.abs());
+            round.normalize_or_zero() * size + DVec3::Z * p.z
+        });
+        let lines = lines(&rod);
+        assert_eq!(lines.len(), 2);
+        assert!(lines.iter().all(FeatureLine::is_closed));
+    }
+
+    #[test]
+    fn points_lie_at_their_arc_length() {
+        let line = &lines(&shapes::cuboid(5))[0];
+        let (middle, _) = line.at(line.length() / 2.0);
+        let [first, last] = [line.at(0.0).0, line.at(line.length() + 1.0).0];
+        assert!(middle.distance((first + last) / 2.0) < 1e-12);
+        assert!((first.distance(last) - line.length()).abs() < 1e-12);
+    }
+}
