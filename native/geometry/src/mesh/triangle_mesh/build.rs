@@ -94,37 +94,65 @@ pub(super) fn check_corners(
     Ok(())
 }
 
-/// Pairs the halfedges of each edge, by sorting them on their unordered ends.
-pub(super) fn match_twins(faces: &[[VertexId; 3]]) -> Result<Vec<u32>, TriangleMeshError> {
+/// Pairs the halfedges of each edge: they share the bucket of their smaller end, where they are
+/// sorted by the larger.
+pub(super) fn match_twins(
+    faces: &[[VertexId; 3]],
+    n_vertices: usize,
+) -> Result<Vec<u32>, TriangleMeshError> {
     let ends = |h: u32| {
         let [f, i] = [(h / 3) as usize, (h % 3) as usize];
         (faces[f][i], faces[f][(i + 1) % 3])
     };
-    let mut order: Vec<(u64, u32)> = (0..3 * faces.len() as u32)
-        .map(|h| {
-            let (a, b) = ends(h);
-            (u64::from(a.min(b).0) << 32 | u64::from(a.max(b).0), h)
-        })
-        .collect();
-    order.sort_unstable();
-    let mut twins = vec![BORDER; order.len()];
-    for run in order.chunk_by(|x, y| x.0 == y.0) {
-        let (a, b) = ends(run[0].1);
-        match *run {
-            [_] => {}
-            [(_, g), (_, h)] if ends(g) != ends(h) => {
-                twins[g as usize] = h;
-                twins[h as usize] = g;
-            }
-            [_, _] => return Err(TriangleMeshError::Orientation { a, b }),
-            _ => {
-                return Err(TriangleMeshError::NonManifoldEdge {
-                    n_faces: run.len(),
-                    a,
-                    b,
-                });
-            }
+    let n_halfedges = 3 * faces.len() as u32;
+    let mut bucket_ends = vec![0u32; n_vertices + 1];
+    for h in 0..n_halfedges {
+        let (a, b) = ends(h);
+        bucket_ends[a.min(b).index() + 1] += 1;
+    }
+    for v in 0..n_vertices {
+        bucket_ends[v + 1] += bucket_ends[v];
+    }
+    // Each start moves on as its bucket fills and becomes its end.
+    let mut entries = vec![(VertexId(0), 0u32); n_halfedges as usize];
+    for h in 0..n_halfedges {
+        let (a, b) = ends(h);
+        let end = &mut bucket_ends[a.min(b).index()];
+        entries[*end as usize] = (a.max(b), h);
+        *end += 1;
+    }
+    let mut twins = vec![BORDER; entries.len()];
+    let mut start = 0;
+    for &end in &bucket_ends[..n_vertices] {
+        let bucket = &mut entries[start..end as usize];
+        start = end as usize;
+        bucket.sort_unstable();
+        for run in bucket.chunk_by(|x, y| x.0 == y.0) {
+            pair(run, ends, &mut twins)?;
         }
     }
     Ok(twins)
+}
+
+/// Pairs the halfedges of one edge.
+fn pair(
+    run: &[(VertexId, u32)],
+    ends: impl Fn(u32) -> (VertexId, VertexId),
+    twins: &mut [u32],
+) -> Result<(), TriangleMeshError> {
+    let (a, b) = ends(run[0].1);
+    match *run {
+        [_] => Ok(()),
+        [(_, g), (_, h)] if ends(g) != ends(h) => {
+            twins[g as usize] = h;
+            twins[h as usize] = g;
+            Ok(())
+        }
+        [_, _] => Err(TriangleMeshError::Orientation { a, b }),
+        _ => Err(TriangleMeshError::NonManifoldEdge {
+            n_faces: run.len(),
+            a,
+            b,
+        }),
+    }
 }

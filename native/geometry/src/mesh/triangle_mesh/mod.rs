@@ -46,7 +46,7 @@ impl TriangleMesh {
             });
         }
         check_corners(&faces, positions.len())?;
-        let twins = match_twins(&faces)?;
+        let twins = match_twins(&faces, positions.len())?;
         let mut mesh = Self {
             positions,
             faces,
