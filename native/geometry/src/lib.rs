@@ -1,5 +1,6 @@
 //! Orbflow's core.
 
+pub mod clean;
 pub mod decimate;
 pub mod deform;
 pub mod hierarchy;

@@ -1,0 +1,72 @@
+//! What was done to a mesh, in numbers and in words.
+
+use serde::{Deserialize, Serialize};
+
+/// What [`clean`](super::clean) had to do.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize)]
+pub struct Report {
+    /// Vertices merged into an earlier one at exactly the same point.
+    pub n_welded: usize,
+    /// Vertices dropped because no face uses them.
+    pub n_isolated: usize,
+    /// Faces dropped because fewer than three different corners were left.
+    pub n_degenerate: usize,
+    /// Faces that lost a repeated corner and went on with the others.
+    pub n_shortened: usize,
+    /// Faces dropped because the same face came before.
+    pub n_duplicates: usize,
+    /// Triangles without area that were dropped; others close the surface and stay.
+    pub n_flat_dropped: usize,
+    /// Triangles turned to agree with their neighbours.
+    pub n_reoriented: usize,
+    /// Vertices added where several fans of faces met at one.
+    pub n_split: usize,
+}
+
+impl Report {
+    /// One sentence for each thing that was done; none for a mesh that came clean.
+    pub fn sentences(&self) -> Vec<String> {
+        [
+            (
+                self.n_welded,
+                "duplicate vertex welded",
+                "duplicate vertices welded",
+            ),
+            (
+                self.n_isolated,
+                "isolated vertex dropped",
+                "isolated vertices dropped",
+            ),
+            (
+                self.n_degenerate,
+                "degenerate face dropped",
+                "degenerate faces dropped",
+            ),
+            (
+                self.n_shortened,
+                "repeated corner dropped from a face",
+                "faces lost a repeated corner",
+            ),
+            (
+                self.n_duplicates,
+                "duplicate face dropped",
+                "duplicate faces dropped",
+            ),
+            (
+                self.n_flat_dropped,
+                "triangle without area dropped",
+                "triangles without area dropped",
+            ),
+            (self.n_reoriented, "face re-oriented", "faces re-oriented"),
+            (
+                self.n_split,
+                "vertex added where fans met",
+                "vertices added where fans met",
+            ),
+        ]
+        .into_iter()
+        .filter(|(n, _, _)| *n > 0)
+        .map(|(n, one, many)| format!("{n} {}", if n == 1 { one } else { many }))
+        .collect()
+    }
+}
