@@ -1,0 +1,96 @@
+# Orbflow: `make` prints what there is. Everything sets itself up from Rust and Python alone.
+
+PYTHON_VERSION ?= $(firstword $(foreach v,3.13 3.11,$(if $(shell scripts/find_python.sh $(v)),$(v))))
+PYTHON = $(shell scripts/find_python.sh $(PYTHON_VERSION))
+VENV = .venv-$(PYTHON_VERSION)
+BIN = $(VENV)/bin
+# On Linux the wheel is linked against an old C library, so that it runs wherever Blender runs.
+WHEEL_FLAGS ?= $(if $(filter Linux,$(shell uname)),--zig --compatibility manylinux_2_28)
+SOURCES := $(shell find Cargo.toml Cargo.lock native/*/Cargo.toml native/*/src native/python -type f 2>/dev/null)
+ADDON := $(shell find addon -type f ! -name "*.pyc" 2>/dev/null)
+
+.PHONY: help demo test test-rust test-python wheel zip fixtures pictures bench lint format ci clean
+
+help: ## Prints this list
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+demo: dist/zip.stamp $(VENV)/venv.stamp ## Remeshes a fixture in the real Blender and leaves the result in demo/
+	$(BIN)/python scripts/demo.py demo
+
+test: test-rust test-python ## Runs every test
+
+test-rust: ## Runs the tests of the Rust crates
+	cargo test --workspace --locked --quiet
+
+test-python: $(VENV)/wheel.stamp ## Runs the tests over Blender, the wheel and the zip
+	$(BIN)/python -m pytest
+
+wheel: dist/wheel.stamp ## Builds the Python wheel in dist/
+zip: dist/zip.stamp ## Builds this platform's Blender extension, dist/orbflow-*.zip
+
+fixtures: $(VENV)/venv.stamp ## Builds every .blend of blend_fixtures/ anew
+	$(BIN)/python blend_fixtures/make.py
+
+pictures: $(VENV)/bench.stamp ## Makes every picture of docs/pictures/ anew
+	cargo build --release --locked -p orbflow-cli
+	$(BIN)/python tests/pictures/make.py
+
+bench: $(VENV)/bench.stamp ## Measures the figures of docs/benchmarks.md anew
+	cargo build --release --locked -p orbflow-cli
+	$(BIN)/python tests/benchmarks/measure.py --write docs/benchmarks.md
+
+lint: $(VENV)/lint.stamp ## Runs every check that is not a test
+	cargo fmt --all --check
+	cargo clippy --workspace --all-targets --locked --quiet -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked --quiet
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/typos
+	$(BIN)/pyright --pythonpath $(BIN)/python
+	cd tests && ../$(BIN)/python -m mypy.stubtest orbflow_native
+	$(BIN)/check-jsonschema --builtin-schema vendor.github-workflows .github/workflows/*.yml
+	$(BIN)/zizmor --offline --quiet .github/workflows
+
+format: $(VENV)/lint.stamp ## Formats all code
+	cargo fmt --all
+	$(BIN)/ruff check --fix --exit-zero .
+	$(BIN)/ruff format .
+
+ci: ## Runs what continuous integration runs: lint and test on Python 3.11 and 3.13
+	$(MAKE) test-rust
+	$(MAKE) test-python PYTHON_VERSION=3.13
+	$(MAKE) test-python PYTHON_VERSION=3.11
+	$(MAKE) lint PYTHON_VERSION=3.13
+
+clean: ## Removes what was built, but not the virtual environments
+	rm -rf dist demo target
+
+$(VENV)/venv.stamp: pyproject.toml
+	@test -n "$(PYTHON)" || { echo "Python 3.11 or 3.13 with venv is needed"; exit 1; }
+	scripts/install_libraries.sh
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet pip==26.3
+	$(BIN)/python -m pip install --quiet --group test
+	@touch $@
+
+$(VENV)/lint.stamp: $(VENV)/wheel.stamp
+	$(BIN)/python -m pip install --quiet --group lint
+	@touch $@
+
+$(VENV)/bench.stamp: $(VENV)/venv.stamp
+	$(BIN)/python -m pip install --quiet --group bench
+	@touch $@
+
+$(VENV)/wheel.stamp: $(VENV)/venv.stamp dist/wheel.stamp
+	$(BIN)/python -m pip install --quiet --force-reinstall --no-deps dist/wheels/*.whl
+	@touch $@
+
+dist/wheel.stamp: $(SOURCES) | $(VENV)/venv.stamp
+	rm -rf dist/wheels
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/maturin build --release --locked \
+		--manifest-path native/python/Cargo.toml --out dist/wheels $(WHEEL_FLAGS)
+	@touch $@
+
+dist/zip.stamp: dist/wheel.stamp $(ADDON) scripts/build_zip.py
+	$(BIN)/python scripts/build_zip.py dist/wheels dist
+	@touch $@
