@@ -4,19 +4,13 @@ use glam::DVec3;
 
 use super::quadric::Quadric;
 use super::rings::Rings;
+use super::rounds::Candidate;
 use crate::mesh::{VertexId, VertexMap};
 
 /// A vertex with more neighbours waits until they are fewer: undoing its collapse needs the kernel
 /// of a polygon, at cubic cost. Every mesh has a vertex of valence 5 or less that can go, so
 /// nothing is ever stuck on this bound.
 pub(super) const MAX_RING: usize = 8;
-
-/// The best collapse of a vertex.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Candidate {
-    pub cost: f64,
-    pub into: VertexId,
-}
 
 /// A level of the hierarchy while it is being collapsed.
 pub(super) struct Level {

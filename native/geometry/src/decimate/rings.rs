@@ -18,6 +18,7 @@ struct Span {
 pub(super) struct Rings {
     spans: VertexMap<Span>,
     arena: Vec<VertexId>,
+    has_border: bool,
     /// The ring of the last removed vertex, from the vertex that it went into.
     removed: Vec<VertexId>,
     spliced: Vec<VertexId>,
@@ -29,6 +30,7 @@ impl Rings {
         let mut rings = Self {
             spans: VertexMap::filled(n, Span::default()),
             arena: Vec::with_capacity(n * 9),
+            has_border: !mesh.is_closed(),
             removed: Vec::new(),
             spliced: Vec::new(),
         };
@@ -60,7 +62,7 @@ impl Rings {
 
     /// Whether a vertex lies on the border.
     pub fn is_border(&self, vertex: VertexId) -> bool {
-        self.of(vertex).iter().any(|&w| self.is_virtual(w))
+        self.has_border && self.of(vertex).iter().any(|&w| self.is_virtual(w))
     }
 
     /// Whether collapsing `vertex` into entry `at` of its ring keeps the surface a manifold of the
@@ -76,7 +78,7 @@ impl Rings {
         // Two borders must not meet in one vertex: their edge has to be a border edge.
         let touches = |v: VertexId| self.is_virtual(v);
         let runs_along = touches(next) || touches(previous);
-        if !runs_along && self.is_border(vertex) && self.is_border(into) {
+        if self.has_border && !runs_along && self.is_border(vertex) && self.is_border(into) {
             return false;
         }
         // Only in a tetrahedron do the two have no other common neighbour although an opposite
