@@ -1,0 +1,166 @@
+//! Triangles that lie on the sphere and on the surface at once.
+
+use glam::DVec3;
+use robust::{Coord3D, orient3d};
+
+use super::triangulation::Triangulation;
+use crate::mesh::{FaceId, HalfedgeId, TriangleMesh, VertexId, VertexMap};
+use crate::sphere_map::{SphereMap, SurfacePoint, is_positive, walk_along};
+
+/// A triangulation whose vertices have a place on the surface, and through the map a point of the
+/// sphere. Every triangle is positive on the sphere: what would fold one is refused.
+pub struct Net<'a> {
+    pub map: &'a SphereMap,
+    pub triangulation: Triangulation,
+    places: VertexMap<SurfacePoint>,
+    sphere: VertexMap<DVec3>,
+    positions: VertexMap<DVec3>,
+}
+
+/// The corners of a regular tetrahedron and its faces.
+const TETRAHEDRON: [DVec3; 4] = [
+    DVec3::new(1.0, 1.0, 1.0),
+    DVec3::new(1.0, -1.0, -1.0),
+    DVec3::new(-1.0, 1.0, -1.0),
+    DVec3::new(-1.0, -1.0, 1.0),
+];
+const TETRAHEDRON_FACES: [[u32; 3]; 4] = [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]];
+
+impl<'a> Net<'a> {
+    /// Four vertices that surround the sphere.
+    pub fn tetrahedron(map: &'a SphereMap) -> Self {
+        let places = TETRAHEDRON.map(|direction| map.locate(direction)).to_vec();
+        let faces = TETRAHEDRON_FACES.map(|f| f.map(VertexId)).to_vec();
+        let mesh = TriangleMesh::new(TETRAHEDRON.to_vec(), faces);
+        let mesh = mesh.expect("a tetrahedron is a closed mesh");
+        Self {
+            map,
+            triangulation: Triangulation::of(&mesh),
+            sphere: places.iter().map(|&at| map.sphere_position(at)).collect(),
+            positions: places.iter().map(|&at| map.surface_position(at)).collect(),
+            places: VertexMap::from_vec(places),
+        }
+    }
+
+    pub fn n_vertices(&self) -> usize {
+        self.places.len()
+    }
+
+    pub fn place(&self, vertex: VertexId) -> SurfacePoint {
+        self.places[vertex]
+    }
+
+    /// Where a vertex lies on the unit sphere.
+    pub fn sphere(&self, vertex: VertexId) -> DVec3 {
+        self.sphere[vertex]
+    }
+
+    /// Where a vertex lies on the surface.
+    pub fn position(&self, vertex: VertexId) -> DVec3 {
+        self.positions[vertex]
+    }
+
+    /// The face that a point of the sphere lies in, found by walking from a vertex.
+    pub fn face_at(&self, point: DVec3, start: VertexId) -> FaceId {
+        let start = self.triangulation.outgoing(start).next();
+        let mut face = start.expect("every vertex has a face").face();
+        // Among Delaunay triangles a walk never comes back (De Floriani et al. 1991).
+        for _ in 0..3 * self.triangulation.n_faces() {
+            let edges = [0, 1, 2].map(|i| HalfedgeId(face.0 * 3 + i));
+            let beyond = |&h: &HalfedgeId| {
+                let [a, b] = [self.triangulation.origin(h), self.triangulation.target(h)];
+                is_positive(self.sphere[b], self.sphere[a], point)
+            };
+            match edges.into_iter().find(beyond) {
+                Some(h) => face = self.triangulation.twin(h).face(),
+                None => break,
+            }
+        }
+        face
+    }
+
+    /// Puts a new vertex into a face and turns edges until the triangulation is Delaunay on the
+    /// sphere; `false`, and nothing changed, when it does not lie strictly inside the face.
+    pub fn insert(&mut self, face: FaceId, place: SurfacePoint) -> bool {
+        let point = self.map.sphere_position(place);
+        let [a, b, c] = self.triangulation.face(face).map(|v| self.sphere[v]);
+        let inside =
+            is_positive(a, b, point) && is_positive(b, c, point) && is_positive(c, a, point);
+        if !inside {
+            return false;
+        }
+        let new = self.triangulation.split(face);
+        self.places.push(place);
+        self.sphere.push(point);
+        self.positions.push(self.map.surface_position(place));
+        let fan = self.triangulation.outgoing(new);
+        let mut open: Vec<HalfedgeId> = fan.map(HalfedgeId::next).collect();
+        while let Some(h) = open.pop() {
+            let twin = self.triangulation.twin(h);
+            if self.is_inside_circle(h) && self.flip(h) {
+                let around = [twin.next(), twin.prev(), h.next(), h.prev()];
+                let faces_new = |&h: &HalfedgeId| self.triangulation.apex(h) == new;
+                open.extend(around.into_iter().filter(faces_new));
+            }
+        }
+        true
+    }
+
+    /// Whether the corner beyond an edge lies inside the circle of the triangle on this side.
+    fn is_inside_circle(&self, h: HalfedgeId) -> bool {
+        let [a, b, c] = self.triangulation.face(h.face());
+        let d = self.triangulation.apex(self.triangulation.twin(h));
+        let [a, b, c, d] = [a, b, c, d].map(|v| {
+            let p = self.sphere[v];
+            Coord3D {
+                x: p.x,
+                y: p.y,
+                z: p.z,
+            }
+        });
+        orient3d(a, b, c, d) < 0.0
+    }
+
+    /// Turns an edge if both new triangles are positive on the sphere.
+    pub fn flip(&mut self, h: HalfedgeId) -> bool {
+        let net = &self.triangulation;
+        let twin = net.twin(h);
+        let corners = [net.origin(h), net.apex(twin), net.target(h), net.apex(h)];
+        let [a, d, b, c] = corners.map(|v| self.sphere[v]);
+        let allowed = is_positive(d, c, a) && is_positive(c, d, b) && net.can_flip(h);
+        if allowed {
+            self.triangulation.flip(h);
+        }
+        allowed
+    }
+
+    /// Moves a vertex along the surface towards a position in space, less far when that would
+    /// fold a triangle; whether it moved.
+    pub fn step(&mut self, vertex: VertexId, target: DVec3) -> bool {
+        let from = self.positions[vertex];
+        for share in [1.0, 0.5, 0.25] {
+            let place = walk_along(self.map, self.places[vertex], from.lerp(target, share));
+            let point = self.map.sphere_position(place);
+            if self.may_stand_at(vertex, point) {
+                self.places[vertex] = place;
+                self.sphere[vertex] = point;
+                self.positions[vertex] = self.map.surface_position(place);
+                return true;
+            }
+        }
+        false
+    }
+
+    fn may_stand_at(&self, vertex: VertexId, point: DVec3) -> bool {
+        self.triangulation.outgoing(vertex).all(|h| {
+            let [b, c] = [self.triangulation.target(h), self.triangulation.apex(h)];
+            is_positive(point, self.sphere[b], self.sphere[c])
+        })
+    }
+
+    /// The triangles as vertex indices and the sphere points of the vertices.
+    pub fn into_parts(self) -> (Vec<[u32; 3]>, Vec<DVec3>) {
+        let faces = self.triangulation.faces().map(|f| f.map(|v| v.0)).collect();
+        (faces, self.sphere.into_vec())
+    }
+}
