@@ -114,14 +114,13 @@ fn closest_weights([ab, ac]: [DVec3; 2], ap: DVec3, bp: DVec3, cp: DVec3) -> ([f
 mod tests {
     use super::*;
     use crate::mesh::{TriangleMesh, VertexMap};
-    use crate::sphere::icosphere;
+    use crate::shapes;
 
     fn ellipsoid() -> SphereMap {
-        let primitive = icosphere(9);
-        let sphere = VertexMap::from_vec(primitive.positions().to_vec());
+        let round = shapes::sphere(9);
+        let sphere = VertexMap::from_vec(round.positions().to_vec());
         let stretched = sphere.iter().map(|&s| s * DVec3::new(1.0, 2.0, 0.3));
-        let faces = primitive.faces().map(|f| [f[0], f[1], f[2]]).collect();
-        let mesh = TriangleMesh::new(stretched.collect(), faces).unwrap();
+        let mesh = TriangleMesh::new(stretched.collect(), round.faces().to_vec()).unwrap();
         SphereMap::prove(mesh, sphere).unwrap()
     }
 
