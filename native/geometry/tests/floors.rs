@@ -6,8 +6,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 const FLOORS: [&[&str]; 4] = [
-    &["mesh", "progress", "random"],
-    &["hierarchy", "measure", "nearest", "sparse", "sphere_map"],
+    &["mesh", "progress", "random", "sparse"],
+    &["hierarchy", "measure", "nearest", "sphere_map"],
     &[
         "clean", "decimate", "deform", "embed", "score", "sphere", "transfer",
     ],

@@ -3,6 +3,7 @@
 //! Everything here reads a mesh and changes nothing. Faces without area have the normal zero, so
 //! that they drop out of sums instead of poisoning them.
 
+mod curvature;
 mod groups;
 mod polygon_edges;
 mod topology;
@@ -11,9 +12,10 @@ use glam::DVec3;
 
 use crate::mesh::{FaceId, FaceMap, HalfedgeId, TriangleMesh, VertexMap};
 
+pub use curvature::{Curvature, CurvatureField, principal_curvatures};
 pub use groups::Groups;
 pub use polygon_edges::PolygonEdges;
-pub use topology::{Topology, topology};
+pub use topology::{Topology, topology, topology_of};
 
 /// The area of every face.
 pub fn face_areas(mesh: &TriangleMesh) -> FaceMap<f64> {

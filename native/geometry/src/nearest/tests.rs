@@ -1,7 +1,6 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::measure::area_vector;
 use crate::random::Random;
 use crate::shapes;
 
@@ -110,9 +109,9 @@ fn of_equal_triangles_the_first_is_found() {
 fn a_filter_and_a_distance_limit_what_is_found() {
     let mesh = shapes::blob(5, 8);
     let tree = Bvh::of_mesh(&mesh);
-    let normals: Vec<DVec3> = triangles_of(&mesh).into_iter().map(area_vector).collect();
+    let up = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).z > 0.0;
     for p in points(&mut Random::new(5), 300, 1.5) {
-        let faces_up = |face: FaceId| normals[face.index()].z > 0.0;
+        let faces_up = |face: FaceId| up(mesh.triangle(face));
         let found = tree.closest_where(p, f64::INFINITY, faces_up).unwrap();
         let up: Vec<_> = mesh.face_ids().filter(|&f| faces_up(f)).collect();
         let of_up: Vec<_> = up.iter().map(|&f| mesh.triangle(f)).collect();
