@@ -3,6 +3,7 @@
 pub mod clean;
 pub mod decimate;
 pub mod deform;
+pub mod embed;
 pub mod hierarchy;
 pub mod measure;
 pub mod mesh;

@@ -7,7 +7,6 @@
 mod errors;
 mod job;
 
-
 /// The compiled half of the package `orbflow_native`.
 #[pyo3::pymodule]
 mod _core {

@@ -1,0 +1,42 @@
+//! The figure of merit of a map, and what is wrong with a proposed one.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+use crate::mesh::{TriangleMesh, VertexMap};
+use crate::sphere_map::triple_product;
+
+/// The smallest area ratio that the energy tells apart; folds count as this.
+const LEAST_RATIO: f64 = 1e-3;
+
+/// The distortion of a map: the area-weighted mean of log(1 + g (1 + 1/d²)) over all triangles.
+///
+/// With the surface scaled to the area 4π, d = det(s₁, s₂, s₃) / 2A is a triangle's area ratio (at
+/// least 10⁻³: folds count as that) and g = Σ cot · |opposite edge|² / 2A its Dirichlet density, so
+/// that an isometry has log 5 ≈ 1.609 everywhere, the least there is. Triangles without area are left out.
+pub fn distortion(mesh: &TriangleMesh, sphere: &VertexMap<DVec3>) -> f64 {
+    let size = mesh.positions().iter().map(|p| p.abs().max_element());
+    let size = size.fold(f64::MIN_POSITIVE, f64::max);
+    let corners = |f: crate::mesh::FaceId| mesh.triangle(f).map(|p| p / size);
+    let double_area = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).length();
+    let total: f64 = mesh.face_ids().map(|f| double_area(corners(f))).sum();
+    let scale = 8.0 * PI / total;
+    let mut sum = 0.0;
+    for face in mesh.face_ids() {
+        let [a, b, c] = corners(face);
+        let [p, q, r] = mesh.face(face).map(|v| sphere[v]);
+        let unscaled = double_area([a, b, c]);
+        let dot = |u: DVec3, v: DVec3, w: DVec3| (v - u).dot(w - u);
+        let dirichlet = dot(a, b, c) * q.distance_squared(r)
+            + dot(b, c, a) * r.distance_squared(p)
+            + dot(c, a, b) * p.distance_squared(q);
+        let density = dirichlet / unscaled / (unscaled * scale);
+        let ratio = triple_product(p, q, r) / (unscaled * scale);
+        let log = (density * (1.0 + ratio.max(LEAST_RATIO).powi(-2))).ln_1p();
+        if log.is_finite() {
+            sum += unscaled * log;
+        }
+    }
+    sum / total
+}

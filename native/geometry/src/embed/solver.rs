@@ -1,0 +1,85 @@
+//! The geometric solver: progressive spherical embedding (Praun & Hoppe 2003).
+
+use super::growth::{GrowError, Growth};
+use super::rest::Stiffness;
+use super::{OffsetPredictor, PredictError, Proposal};
+use crate::hierarchy::CollapseHierarchy;
+use crate::progress::Progress;
+
+/// The predictor that needs no training: it undoes the collapses on the sphere, coarse to fine,
+/// and relaxes in between, so that low frequencies are settled while there are few vertices.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Solver {
+    /// Sweeps at each level below 1,000 vertices.
+    pub n_coarse_sweeps: u32,
+    /// Sweeps at each level from 1,000 vertices on.
+    pub n_fine_sweeps: u32,
+}
+
+impl Default for Solver {
+    fn default() -> Self {
+        Self {
+            n_coarse_sweeps: 15,
+            n_fine_sweeps: 5,
+        }
+    }
+}
+
+impl OffsetPredictor for Solver {
+    fn name(&self) -> &'static str {
+        "solver"
+    }
+
+    fn propose(
+        &self,
+        hierarchy: &CollapseHierarchy,
+        progress: &Progress,
+    ) -> Result<Proposal, PredictError> {
+        let mut n_relaxations = 0;
+        // Triangles of equal size have the most room; relaxation brings the shape back later.
+        for stiffness in [Stiffness::Shape, Stiffness::Equal] {
+            let mut growth = Growth::new(hierarchy, stiffness);
+            let grown = self.grow(&mut growth, progress);
+            n_relaxations += growth.n_relaxations;
+            match grown {
+                Err(GrowError::NoRoom { .. }) if stiffness == Stiffness::Shape => {}
+                Err(GrowError::NoRoom { vertex }) => {
+                    let reason = format!("there is no room for vertex {vertex} on the sphere");
+                    return Err(PredictError::Failed { reason });
+                }
+                Err(GrowError::Cancelled(cancelled)) => return Err(cancelled.into()),
+                Ok(()) => {
+                    let sphere = growth.partial.sphere;
+                    return Ok(Proposal {
+                        sphere,
+                        n_relaxations,
+                    });
+                }
+            }
+        }
+        unreachable!("the loop returns on its last turn")
+    }
+}
+
+impl Solver {
+    /// Undoes every round, with sweeps each time the number of vertices has grown enough.
+    fn grow(self, growth: &mut Growth, progress: &Progress) -> Result<(), GrowError> {
+        let n_vertices = growth.hierarchy.n_vertices();
+        let mut n_relaxed = 4;
+        for round in (0..growth.hierarchy.n_rounds()).rev() {
+            growth.insert_round(round, progress)?;
+            let n_there = growth.partial.n_there();
+            let [factor, n_sweeps] = if n_there < 1_000 {
+                [1.15, f64::from(self.n_coarse_sweeps)]
+            } else {
+                [1.3, f64::from(self.n_fine_sweeps)]
+            };
+            if n_there as f64 >= factor * n_relaxed as f64 && n_there < n_vertices {
+                growth.sweeps(n_sweeps as u32, progress)?;
+                n_relaxed = n_there;
+            }
+            progress.at(n_there as f64 / n_vertices as f64)?;
+        }
+        Ok(())
+    }
+}
