@@ -13,6 +13,7 @@ pub mod random;
 pub mod sparse;
 pub mod sphere;
 pub mod sphere_map;
+pub mod transfer;
 
 #[cfg(test)]
 extern crate self as orbflow_geometry;
