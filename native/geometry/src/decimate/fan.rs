@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::quadric::Quadric;
 use super::rings::Rings;
-use super::rounds::Candidate;
+use super::rounds::{Candidate, Costs};
 use crate::mesh::{VertexId, VertexMap};
 
 /// A vertex with more neighbours waits until they are fewer: undoing its collapse needs the kernel
@@ -17,11 +17,26 @@ pub(super) struct Level {
     pub rings: Rings,
     pub points: VertexMap<DVec3>,
     pub quadrics: VertexMap<Quadric>,
+    /// A collapse may give its goal no more edges than this, unless it had more.
+    pub max_valence: usize,
 }
 
-impl Level {
-    /// The cheapest legal collapse of a vertex that leaves its goal at most `max_valence` edges.
-    pub fn best_collapse(&self, vertex: VertexId, max_valence: usize) -> Option<Candidate> {
+impl Costs for Level {
+    fn rings(&self) -> &Rings {
+        &self.rings
+    }
+
+    fn bound(&self, vertex: VertexId) -> f64 {
+        let ring = self.rings.of(vertex);
+        if ring.len() > MAX_RING {
+            return f64::INFINITY;
+        }
+        ring.iter().fold(f64::INFINITY, |least, &into| {
+            least.min(self.distance(vertex, into))
+        })
+    }
+
+    fn best(&self, vertex: VertexId) -> Option<Candidate> {
         let ring = self.rings.of(vertex);
         if ring.len() > MAX_RING {
             return None;
@@ -29,7 +44,7 @@ impl Level {
         let fan = Fan::new(self, vertex);
         let mut bounds = [f64::INFINITY; MAX_RING];
         for (bound, &into) in bounds.iter_mut().zip(ring) {
-            *bound = self.bound(vertex, into, max_valence);
+            *bound = self.distance(vertex, into);
         }
         let mut best: Option<Candidate> = None;
         for _ in ring {
@@ -49,12 +64,14 @@ impl Level {
         }
         best
     }
+}
 
+impl Level {
     /// The cost of a collapse but for the shape of its triangles, which can only raise it.
-    fn bound(&self, vertex: VertexId, into: VertexId, max_valence: usize) -> f64 {
+    fn distance(&self, vertex: VertexId, into: VertexId) -> f64 {
         let [old, new] = [self.rings.of(vertex).len(), self.rings.of(into).len()];
         let valence = old + new - 4;
-        if valence > max_valence.max(new) {
+        if valence > self.max_valence.max(new) {
             return f64::INFINITY;
         }
         let goal = self.points[into];

@@ -70,32 +70,33 @@ impl Rings {
     pub fn is_legal(&self, vertex: VertexId, at: usize) -> bool {
         let ring = self.of(vertex);
         let into = ring[at];
-        let k = ring.len();
         if self.is_virtual(into) {
             return false;
         }
-        let [next, previous] = [ring[(at + 1) % k], ring[(at + k - 1) % k]];
+        let [next, previous] = beside(ring, at);
         // Two borders must not meet in one vertex: their edge has to be a border edge.
-        let touches = |v: VertexId| self.is_virtual(v);
-        let runs_along = touches(next) || touches(previous);
+        let runs_along = self.is_virtual(next) || self.is_virtual(previous);
         if self.has_border && !runs_along && self.is_border(vertex) && self.is_border(into) {
             return false;
         }
         // Only in a tetrahedron do the two have no other common neighbour although an opposite
         // vertex has valence 3.
-        let shrinks = |v: VertexId| touches(v) || self.of(v).len() > 3;
+        let shrinks = |v: VertexId| self.is_virtual(v) || self.of(v).len() > 3;
         if !shrinks(next) || !shrinks(previous) {
             return false;
         }
-        let others = (2..k - 1).map(|i| ring[(at + i) % k]);
         let around = self.of(into);
-        others.into_iter().all(|w| {
-            if touches(w) || around.len() <= self.of(w).len() {
+        let is_free = |&w: &VertexId| {
+            if w == next || w == previous {
+                return true;
+            }
+            if self.is_virtual(w) || around.len() <= self.of(w).len() {
                 !around.contains(&w)
             } else {
                 !self.of(w).contains(&into)
             }
-        })
+        };
+        ring[..at].iter().all(is_free) && ring[at + 1..].iter().all(is_free)
     }
 
     /// Removes `vertex` by a legal collapse into entry `at` of its ring; returns that ring, rotated
@@ -162,4 +163,11 @@ impl Rings {
         let start = span.start as usize;
         self.arena[start..start + len].copy_from_slice(ring);
     }
+}
+
+/// The entries after and before an entry of a ring.
+pub(super) fn beside(ring: &[VertexId], at: usize) -> [VertexId; 2] {
+    let after = if at + 1 == ring.len() { 0 } else { at + 1 };
+    let before = if at == 0 { ring.len() } else { at } - 1;
+    [ring[after], ring[before]]
 }

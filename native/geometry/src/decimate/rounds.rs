@@ -25,12 +25,26 @@ pub(super) struct Choice {
     pub into: VertexId,
 }
 
+/// What a vertex costs to remove, asked in parallel.
+pub(super) trait Costs: Sync {
+    /// The rings of the level.
+    fn rings(&self) -> &Rings;
+    /// A quick lower bound of the cost of the best collapse; infinite when there is surely none.
+    fn bound(&self, vertex: VertexId) -> f64;
+    /// The best collapse of a vertex that is allowed.
+    fn best(&self, vertex: VertexId) -> Option<Candidate>;
+}
+
 /// The best collapse of every vertex, and which of them have to be looked at again.
+///
+/// A vertex whose ring or place changes gets the quick bound; only those that come among the
+/// cheapest are looked at in earnest, and again when a neighbour has changed since.
 pub(super) struct Rounds {
     pub alive: Vec<VertexId>,
-    best: VertexMap<Option<Candidate>>,
-    /// The round in which `best` was computed, and that in which the ring or place changed last.
-    evaluated: VertexMap<u32>,
+    costs: VertexMap<f64>,
+    into: VertexMap<VertexId>,
+    /// The round in which the best was found (0 for bounds), and that of the last change.
+    found: VertexMap<u32>,
     changed: VertexMap<u32>,
     dirty: Vec<VertexId>,
     round: u32,
@@ -40,82 +54,108 @@ pub(super) struct Rounds {
 
 impl Rounds {
     pub fn new(n_vertices: usize, share: f64) -> Self {
-        let best: VertexMap<_> = VertexMap::filled(n_vertices, None);
+        let costs: VertexMap<_> = VertexMap::filled(n_vertices, f64::INFINITY);
         Self {
-            alive: best.ids().collect(),
-            dirty: best.ids().collect(),
-            best,
-            evaluated: VertexMap::filled(n_vertices, 0),
+            alive: costs.ids().collect(),
+            dirty: costs.ids().collect(),
+            costs,
+            into: VertexMap::filled(n_vertices, VertexId(0)),
+            found: VertexMap::filled(n_vertices, 0),
             changed: VertexMap::filled(n_vertices, 0),
             round: 0,
             share,
         }
     }
 
-    /// The cheapest collapses, in order; `None` when no vertex has one. `best` is asked in
-    /// parallel, and again where a neighbour of the vertex has changed since.
+    /// The cheapest collapses, in order; `None` when no vertex has one.
     pub fn next(
         &mut self,
-        rings: &Rings,
-        best: impl Fn(VertexId) -> Option<Candidate> + Sync,
+        costs: &impl Costs,
         progress: &Progress,
     ) -> Result<Option<Vec<Choice>>, Cancelled> {
         self.round += 1;
-        self.alive.retain(|&v| !rings.of(v).is_empty());
+        self.alive.retain(|&v| !costs.rings().of(v).is_empty());
         let dirty = std::mem::take(&mut self.dirty);
-        self.evaluate(&dirty, &best, progress)?;
-        let Some(limit) = self.cost_limit() else {
+        self.bound(&dirty, costs, progress)?;
+        let limit = self.cost_limit();
+        if limit == f64::INFINITY {
             return Ok(None);
-        };
-        let is_cheap = |v: &VertexId| self.best[*v].is_some_and(|best| best.cost <= limit);
+        }
+        let is_cheap = |v: &VertexId| self.costs[*v] <= limit;
         let cheap: Vec<VertexId> = self.alive.iter().copied().filter(is_cheap).collect();
-        let is_stale = |v: &VertexId| self.is_stale(rings, *v);
+        let is_stale = |v: &VertexId| self.is_stale(costs.rings(), *v);
         let stale: Vec<VertexId> = cheap.iter().copied().filter(is_stale).collect();
-        self.evaluate(&stale, &best, progress)?;
+        self.find(&stale, costs, progress)?;
         let choice = |vertex: VertexId| {
-            let Candidate { cost, into } = self.best[vertex].filter(|best| best.cost <= limit)?;
-            Some(Choice { cost, vertex, into })
+            let (cost, into) = (self.costs[vertex], self.into[vertex]);
+            (cost <= limit).then_some(Choice { cost, vertex, into })
         };
         let mut order: Vec<Choice> = cheap.into_iter().filter_map(choice).collect();
         order.sort_unstable_by(|a, b| a.cost.total_cmp(&b.cost).then(a.vertex.cmp(&b.vertex)));
         Ok(Some(order))
     }
 
-    fn evaluate(
+    /// Bounds the costs of some vertices.
+    fn bound(
         &mut self,
         vertices: &[VertexId],
-        best: &(impl Fn(VertexId) -> Option<Candidate> + Sync),
+        costs: &impl Costs,
         progress: &Progress,
     ) -> Result<(), Cancelled> {
-        let mut found = Vec::new();
+        let mut bounds = Vec::new();
         for batch in vertices.chunks(BATCH) {
             progress.check()?;
             let tasks = batch.par_iter().with_min_len(TASK);
-            tasks.map(|&v| best(v)).collect_into_vec(&mut found);
-            for (&v, &candidate) in batch.iter().zip(&found) {
-                self.best[v] = candidate;
-                self.evaluated[v] = self.round;
+            tasks.map(|&v| costs.bound(v)).collect_into_vec(&mut bounds);
+            for (&v, &bound) in batch.iter().zip(&bounds) {
+                self.costs[v] = bound;
+                self.found[v] = 0;
             }
         }
         Ok(())
     }
 
-    /// The cost up to which this round takes collapses; none when nothing can be collapsed.
-    fn cost_limit(&self) -> Option<f64> {
-        let best = |v: &VertexId| self.best[*v].map(|best| best.cost);
-        let mut costs: Vec<f64> = self.alive.iter().filter_map(best).collect();
-        let last = costs.len().checked_sub(1)?;
+    /// Finds the best collapses of some vertices.
+    fn find(
+        &mut self,
+        vertices: &[VertexId],
+        costs: &impl Costs,
+        progress: &Progress,
+    ) -> Result<(), Cancelled> {
+        let mut best = Vec::new();
+        for batch in vertices.chunks(BATCH) {
+            progress.check()?;
+            let tasks = batch.par_iter().with_min_len(TASK);
+            tasks.map(|&v| costs.best(v)).collect_into_vec(&mut best);
+            for (&v, best) in batch.iter().zip(&best) {
+                self.costs[v] = best.map_or(f64::INFINITY, |best| best.cost);
+                self.into[v] = best.map_or(v, |best| best.into);
+                self.found[v] = self.round;
+            }
+        }
+        Ok(())
+    }
+
+    /// The cost up to which this round takes collapses; infinite when nothing can be collapsed.
+    fn cost_limit(&self) -> f64 {
+        let cost = |&v: &VertexId| self.costs[v];
+        let mut costs: Vec<f64> = self
+            .alive
+            .iter()
+            .map(cost)
+            .filter(|cost| cost.is_finite())
+            .collect();
+        let Some(last) = costs.len().checked_sub(1) else {
+            return f64::INFINITY;
+        };
         let at = (self.share * self.alive.len() as f64) as usize;
-        let (_, limit, _) = costs.select_nth_unstable_by(at.min(last), f64::total_cmp);
-        Some(*limit)
+        *costs.select_nth_unstable_by(at.min(last), f64::total_cmp).1
     }
 
     fn is_stale(&self, rings: &Rings, vertex: VertexId) -> bool {
-        let evaluated = self.evaluated[vertex];
-        rings
-            .of(vertex)
-            .iter()
-            .any(|&w| !rings.is_virtual(w) && self.changed[w] >= evaluated)
+        let found = self.found[vertex];
+        let has_changed = |&w: &VertexId| !rings.is_virtual(w) && self.changed[w] >= found;
+        found == 0 || rings.of(vertex).iter().any(has_changed)
     }
 
     /// Whether a vertex was marked in this round.

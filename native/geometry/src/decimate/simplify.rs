@@ -116,7 +116,6 @@ struct Simplifying {
     /// The vertices that a collapse has moved, and the number of the round in which it did last.
     moved: VertexMap<u32>,
     round: u32,
-    guard: Guard,
     n_faces: usize,
     n_collapses: usize,
 }
@@ -136,6 +135,7 @@ impl Simplifying {
             rings: Rings::of_mesh(mesh),
             points,
             quadrics,
+            guard: Guard::Shape,
         };
         Self {
             frame,
@@ -143,7 +143,6 @@ impl Simplifying {
             rounds: Rounds::new(mesh.n_vertices(), ROUND_SHARE),
             moved: VertexMap::filled(mesh.n_vertices(), 0),
             round: 0,
-            guard: Guard::Shape,
             n_faces: mesh.n_faces(),
             n_collapses: 0,
         }
@@ -152,11 +151,9 @@ impl Simplifying {
     /// Takes the cheapest collapses that do not touch each other; whether more could follow.
     fn round(&mut self, n_wanted: usize, progress: &Progress) -> Result<bool, Cancelled> {
         self.round += 1;
-        let (merging, guard) = (&self.merging, self.guard);
-        let best = |v| merging.best_merge(v, guard);
-        let Some(choices) = self.rounds.next(&merging.rings, best, progress)? else {
-            let may_relax = self.guard == Guard::Shape;
-            self.guard = Guard::Topology;
+        let Some(choices) = self.rounds.next(&self.merging, progress)? else {
+            let may_relax = self.merging.guard == Guard::Shape;
+            self.merging.guard = Guard::Topology;
             self.rounds.mark_all();
             return Ok(may_relax);
         };

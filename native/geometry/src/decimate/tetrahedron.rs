@@ -107,7 +107,6 @@ struct Collapsing {
     level: Level,
     rounds: Rounds,
     n_left: usize,
-    max_valence: usize,
     record: HierarchyBuilder,
 }
 
@@ -119,24 +118,22 @@ impl Collapsing {
             rings: Rings::of_mesh(mesh),
             quadrics: vertex_quadrics(mesh, &points),
             points,
+            max_valence: MAX_VALENCE,
         };
         Self {
             level,
             rounds: Rounds::new(n_left, ROUND_SHARE),
             n_left,
-            max_valence: MAX_VALENCE,
             record: HierarchyBuilder::new(),
         }
     }
 
     /// Takes the cheapest collapses that do not touch each other.
     fn round(&mut self, progress: &Progress) -> Result<(), Cancelled> {
-        let (level, max_valence) = (&self.level, self.max_valence);
-        let best = |v| level.best_collapse(v, max_valence);
-        let Some(choices) = self.rounds.next(&level.rings, best, progress)? else {
+        let Some(choices) = self.rounds.next(&self.level, progress)? else {
             // A vertex of valence 5 or less can always be collapsed when the valences that this
             // makes are not bounded, and there always is one.
-            self.max_valence *= 2;
+            self.level.max_valence *= 2;
             self.rounds.mark_all();
             return Ok(());
         };
