@@ -32,8 +32,9 @@ pub fn distortion(mesh: &TriangleMesh, sphere: &VertexMap<DVec3>) -> f64 {
             + dot(b, c, a) * r.distance_squared(p)
             + dot(c, a, b) * p.distance_squared(q);
         let density = dirichlet / unscaled / (unscaled * scale);
-        let ratio = triple_product(p, q, r) / (unscaled * scale);
-        let log = (density * (1.0 + ratio.max(LEAST_RATIO).powi(-2))).ln_1p();
+        let ratio = (triple_product(p, q, r) / (unscaled * scale)).max(LEAST_RATIO);
+        // No map has g < 2 d; a triangle shrunk to a point has after the ratio was bounded.
+        let log = (density.max(2.0 * ratio) * (1.0 + ratio.powi(-2))).ln_1p();
         if log.is_finite() {
             sum += unscaled * log;
         }

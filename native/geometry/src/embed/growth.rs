@@ -1,16 +1,16 @@
-//! Undoing collapses on the sphere, round by round.
+//! Putting vertices back on the sphere: each into the kernel of its ring, with sweeps in between.
 
 use glam::DVec3;
 use rayon::prelude::*;
 use thiserror::Error;
 
-use super::fan;
+use super::fan::{self, Rest};
 use super::level::Level;
 use super::partial::Partial;
 use super::rest::{Metric, Stiffness, to_size_one};
 use super::room;
 use crate::hierarchy::{Collapse, CollapseHierarchy};
-use crate::mesh::{Id, VertexId};
+use crate::mesh::{Id, TriangleMesh, VertexId};
 use crate::progress::{Cancelled, Progress};
 
 /// Relaxations of a new vertex while its neighbours stay.
@@ -18,20 +18,22 @@ const N_SETTLING: usize = 3;
 /// A vertex that moved by less than this share of its ring's radius is still.
 pub const STILL: f64 = 1e-3;
 /// How often the surroundings are relaxed, more evenly each time, before a vertex has no room.
-const MAX_RESCUES: u32 = 6;
+const MAX_RESCUES: i32 = 6;
+/// Sweeps of each such attempt.
+const N_RESCUE_SWEEPS: u32 = 10;
 /// A round with fewer insertions than this is computed by one thread.
 const LEAST_PARALLEL: usize = 256;
 
-/// A hierarchy that grows on the sphere.
-pub struct Growth<'a> {
-    /// What grows.
-    pub hierarchy: &'a CollapseHierarchy,
+/// A mesh that grows on the sphere.
+#[derive(Clone, Debug)]
+pub struct Growth {
     /// What is there.
     pub partial: Partial,
     /// How many relaxations of single vertices were done.
     pub n_relaxations: u64,
     positions: Vec<DVec3>,
     stiffness: Stiffness,
+    /// The metric in which new vertices settle: that of the last level.
     metric: Metric,
 }
 
@@ -49,81 +51,108 @@ pub enum GrowError {
     },
 }
 
-impl<'a> Growth<'a> {
-    /// The coarsest level.
-    pub fn new(hierarchy: &'a CollapseHierarchy, stiffness: Stiffness) -> Self {
+impl Growth {
+    /// The coarsest level of a hierarchy.
+    pub fn tetrahedron(hierarchy: &CollapseHierarchy, stiffness: Stiffness) -> Self {
         let partial = Partial::tetrahedron(hierarchy);
-        let positions = to_size_one(hierarchy.mesh().positions());
-        let level = Level::new(&partial, &positions, stiffness.metric(4));
+        Self::new(partial, hierarchy.mesh(), stiffness)
+    }
+
+    /// A map of (parts of) a mesh.
+    pub fn new(partial: Partial, mesh: &TriangleMesh, stiffness: Stiffness) -> Self {
+        let positions = to_size_one(mesh.positions());
+        let metric = stiffness.metric(partial.n_there());
         Self {
-            metric: level.metric(),
+            metric: Level::new(&partial, &positions, metric).metric(),
             positions,
-            hierarchy,
             partial,
             n_relaxations: 0,
             stiffness,
         }
     }
 
-    /// Undoes the collapses of a round. They are independent, so all places are found first.
+    /// Undoes independent collapses: all places are found before the first is taken.
     ///
     /// # Errors
     /// [`GrowError`].
-    pub fn insert_round(&mut self, round: usize, progress: &Progress) -> Result<(), GrowError> {
-        let round = self.hierarchy.round(round);
-        let place = |index: usize| self.place(self.hierarchy.collapse(index));
-        let places: Vec<Option<DVec3>> = if round.len() < LEAST_PARALLEL {
-            round.clone().map(place).collect()
+    pub fn insert_all(
+        &mut self,
+        collapses: &[Collapse<'_>],
+        progress: &Progress,
+    ) -> Result<(), GrowError> {
+        let place = |&collapse: &Collapse<'_>| self.place(collapse);
+        let places: Vec<Option<DVec3>> = if collapses.len() < LEAST_PARALLEL {
+            collapses.iter().map(place).collect()
         } else {
-            round.clone().into_par_iter().map(place).collect()
+            collapses.par_iter().map(place).collect()
         };
         let mut crowded = Vec::new();
-        for (index, place) in round.zip(places) {
+        for (&collapse, place) in collapses.iter().zip(places) {
             match place {
-                Some(position) => self.insert(index, position),
-                None => crowded.push(index),
+                Some(position) => self.insert(collapse, position),
+                None => crowded.push(collapse),
             }
         }
         crowded
             .into_iter()
-            .try_for_each(|index| self.rescue(index, progress))
+            .try_for_each(|collapse| self.rescue(collapse, progress))
     }
 
-    fn insert(&mut self, index: usize, position: DVec3) {
-        self.partial
-            .insert(self.hierarchy.collapse(index), position);
+    fn insert(&mut self, collapse: Collapse<'_>, position: DVec3) {
+        self.partial.insert(collapse, position);
         self.n_relaxations += N_SETTLING as u64;
     }
 
     /// Where a collapsed vertex goes: into the kernel of its ring, then down its energy.
     fn place(&self, collapse: Collapse<'_>) -> Option<DVec3> {
         let ring = self.partial.closed_ring(collapse.ring);
-        let corners = (0..collapse.ring.len()).map(|i| {
-            let next = collapse.ring[(i + 1) % collapse.ring.len()];
-            let [p, b, c] =
-                [collapse.vertex, collapse.ring[i], next].map(|v| self.positions[v.index()]);
-            self.metric.rest(p, b, c)
-        });
-        let rests: Vec<_> = corners.collect();
+        let rests = self.rests(collapse);
         let start = room::point(&ring).filter(|&p| fan::energy(p, &ring, &rests).is_finite())?;
         let settle = |p, _| fan::relax(p, &ring, &rests).position;
         Some((0..N_SETTLING).fold(start, settle))
     }
 
+    /// The rest shapes of the fan of a vertex.
+    fn rests(&self, Collapse { vertex, ring }: Collapse<'_>) -> Vec<Rest> {
+        let corners = (0..ring.len()).map(|i| [vertex, ring[i], ring[(i + 1) % ring.len()]]);
+        let shape = |corner: [VertexId; 3]| {
+            let [p, b, c] = corner.map(|v| self.positions[v.index()]);
+            self.metric.rest(p, b, c)
+        };
+        corners.map(shape).collect()
+    }
+
+    /// Relaxes some vertices one after the other.
+    pub fn relax_each(&mut self, vertices: &[VertexId]) {
+        for &vertex in vertices {
+            let around = self.partial.ring(vertex);
+            let ring = self.partial.closed_ring(around);
+            let rests = self.rests(Collapse {
+                vertex,
+                ring: around,
+            });
+            let relaxed = fan::relax(self.partial.sphere[vertex], &ring, &rests);
+            self.partial.sphere[vertex] = relaxed.position;
+            self.n_relaxations += 1;
+        }
+    }
+
     /// Makes room for a vertex by relaxing everything in an ever more even metric.
-    fn rescue(&mut self, index: usize, progress: &Progress) -> Result<(), GrowError> {
+    fn rescue(&mut self, collapse: Collapse<'_>, progress: &Progress) -> Result<(), GrowError> {
+        let usual = self.metric;
         for attempt in 1..=MAX_RESCUES {
             let even = Metric {
-                delta: self.metric.delta + 0.05 * 4.0_f64.powi(attempt as i32),
-                ..self.metric
+                delta: usual.delta + 0.05 * 4.0_f64.powi(attempt),
+                ..usual
             };
-            self.relax(10, even, progress)?;
-            if let Some(position) = self.place(self.hierarchy.collapse(index)) {
-                self.insert(index, position);
+            self.relax(N_RESCUE_SWEEPS, even, progress)?;
+            if let Some(position) = self.place(collapse) {
+                self.insert(collapse, position);
+                self.metric = usual;
                 return Ok(());
             }
         }
-        let vertex = self.hierarchy.collapse(index).vertex;
+        let vertex = collapse.vertex;
         Err(GrowError::NoRoom { vertex })
     }
 
@@ -132,8 +161,7 @@ impl<'a> Growth<'a> {
     /// # Errors
     /// [`Cancelled`].
     pub fn sweeps(&mut self, n_sweeps: u32, progress: &Progress) -> Result<(), Cancelled> {
-        let n_there = self.partial.n_there();
-        let metric = self.stiffness.metric(n_there);
+        let metric = self.stiffness.metric(self.partial.n_there());
         self.relax(n_sweeps, metric, progress)
     }
 

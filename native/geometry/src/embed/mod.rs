@@ -9,9 +9,12 @@
 
 mod energy;
 mod fan;
+mod finish;
 mod growth;
 mod level;
 mod partial;
+mod proposal;
+mod repair;
 mod rest;
 mod room;
 mod solver;
@@ -23,10 +26,11 @@ use thiserror::Error;
 use crate::hierarchy::CollapseHierarchy;
 use crate::mesh::VertexMap;
 use crate::progress::{Cancelled, Progress};
-use crate::sphere_map::{NotABijection, SphereMap, degree, folded_faces};
+use crate::sphere_map::{NotABijection, SphereMap, folded_faces};
 pub use energy::distortion;
-use level::Level;
-use partial::Partial;
+use finish::finish;
+pub use proposal::ProposalReport;
+use proposal::unit_vectors;
 pub use solver::Solver;
 
 /// Proposes where on the sphere the vertices of a mesh go.
@@ -86,23 +90,6 @@ impl Default for Settings {
             tolerance: 1e-4,
         }
     }
-}
-
-/// What was proposed, before any repair.
-#[derive(Clone, Copy, PartialEq, Debug, Default, Serialize)]
-pub struct ProposalReport {
-    /// Its [`distortion`], points that are not usable counted as (0, 0, 1).
-    pub energy: f64,
-    /// How many triangles were folded.
-    pub n_folds: usize,
-    /// The same in percent.
-    pub folds_pct: f64,
-    /// How often it covered the sphere.
-    pub degree: i64,
-    /// How many vertices had no usable point.
-    pub n_unusable: usize,
-    /// How many relaxations of single vertices the predictor did.
-    pub n_relaxations: u64,
 }
 
 /// What the repair of a proposal had to do.
@@ -187,96 +174,76 @@ pub fn embed(
 ) -> Result<Embedded, Error> {
     let mesh = hierarchy.mesh();
     let proposed = predictor.propose(hierarchy, &progress.part("", 0.0, 0.7))?;
-    let mut n_relaxations = proposed.n_relaxations;
-    let (mut sphere, n_unusable) = usable(&proposed.sphere, mesh.n_vertices());
-    let proposal = assess(hierarchy, &sphere, n_unusable, proposed.n_relaxations);
-    let mut repair = RepairReport::default();
-    if proposal.n_folds > 0 || proposal.degree != 1 || n_unusable > 0 {
-        repair.fell_back_to_solver = true;
-        let own = Solver::default().propose(hierarchy, &progress.part("", 0.7, 0.9))?;
-        sphere = own.sphere;
-        n_relaxations += own.n_relaxations;
+    let sphere = unit_vectors(&proposed, mesh.n_vertices());
+    let proposal = ProposalReport::new(mesh, &sphere, proposed.n_relaxations);
+    let mut valid = Valid::new(sphere, proposed.n_relaxations);
+    if !proposal.is_valid() {
+        valid.repair(hierarchy, proposal.n_folds, &progress.part("", 0.7, 0.9))?;
     }
-    let finish = finish(hierarchy, sphere, settings, &progress.part("", 0.9, 1.0))?;
+    let finish = finish(mesh, valid.sphere, settings, &progress.part("", 0.9, 1.0))?;
     let map = SphereMap::prove(mesh.clone(), finish.sphere)?;
     let report = Report {
         n_vertices: mesh.n_vertices(),
         n_folds: 0,
         degree: 1,
         energy: distortion(mesh, map.sphere()),
-        n_relaxations: n_relaxations + finish.n_relaxations,
+        n_relaxations: valid.n_relaxations + finish.n_relaxations,
         n_sweeps: finish.n_sweeps,
         complete: finish.complete,
         predictor: predictor.name().to_owned(),
         proposal,
-        repair,
+        repair: valid.report,
     };
     Ok(Embedded { map, report })
 }
 
-/// One unit vector per vertex, and how many vertices had none.
-fn usable(sphere: &VertexMap<DVec3>, n_vertices: usize) -> (VertexMap<DVec3>, usize) {
-    let given = sphere.iter().map(|p| p.try_normalize());
-    let given: Vec<_> = given
-        .chain(std::iter::repeat(None))
-        .take(n_vertices)
-        .collect();
-    let n_unusable = given.iter().filter(|p| p.is_none()).count();
-    let points = given.into_iter().map(|p| p.unwrap_or(DVec3::Z));
-    (points.collect(), n_unusable)
-}
-
-fn assess(
-    hierarchy: &CollapseHierarchy,
-    sphere: &VertexMap<DVec3>,
-    n_unusable: usize,
-    n_relaxations: u64,
-) -> ProposalReport {
-    let mesh = hierarchy.mesh();
-    let n_folds = folded_faces(mesh.faces(), sphere).len();
-    ProposalReport {
-        energy: distortion(mesh, sphere),
-        n_folds,
-        folds_pct: 100.0 * n_folds as f64 / mesh.n_faces() as f64,
-        degree: degree(mesh.faces(), sphere),
-        n_unusable,
-        n_relaxations,
-    }
-}
-
-/// A finished map.
-struct Finish {
+/// A proposal on its way to a valid map.
+struct Valid {
     sphere: VertexMap<DVec3>,
     n_relaxations: u64,
-    n_sweeps: u32,
-    complete: bool,
+    report: RepairReport,
 }
 
-/// Sweeps over a valid map until its energy is settled.
-fn finish(
-    hierarchy: &CollapseHierarchy,
-    sphere: VertexMap<DVec3>,
-    settings: &Settings,
-    progress: &Progress,
-) -> Result<Finish, Cancelled> {
-    let mut partial = Partial::whole(hierarchy.mesh(), sphere);
-    let positions = rest::to_size_one(hierarchy.mesh().positions());
-    let mut level = Level::new(&partial, &positions, rest::Metric::FINISH);
-    let (mut n_relaxations, mut n_sweeps, mut complete) = (0, 0, false);
-    while n_sweeps < settings.max_sweeps && !complete {
-        progress.at(f64::from(n_sweeps) / f64::from(settings.max_sweeps))?;
-        let sweep = level.sweep(growth::STILL, progress)?;
-        n_relaxations += sweep.n_relaxations;
-        n_sweeps += 1;
-        complete = sweep.decrease <= settings.tolerance * sweep.energy;
+impl Valid {
+    fn new(sphere: VertexMap<DVec3>, n_relaxations: u64) -> Self {
+        Self {
+            sphere,
+            n_relaxations,
+            report: RepairReport::default(),
+        }
     }
-    level.store(&mut partial);
-    Ok(Finish {
-        sphere: partial.sphere,
-        n_relaxations,
-        n_sweeps,
-        complete,
-    })
+
+    /// Makes the map valid: turned inside out where that helps, repaired where it can be, else
+    /// replaced by the solver's.
+    fn repair(
+        &mut self,
+        hierarchy: &CollapseHierarchy,
+        n_folds: usize,
+        progress: &Progress,
+    ) -> Result<(), Error> {
+        let mesh = hierarchy.mesh();
+        let mut sphere = std::mem::replace(&mut self.sphere, VertexMap::from_vec(Vec::new()));
+        // A mirrored map is folded everywhere, and right again after s → −s.
+        let turned: VertexMap<DVec3> = sphere.iter().map(|&p| -p).collect();
+        if folded_faces(mesh.faces(), &turned).len() < n_folds {
+            self.report.mirrored = true;
+            sphere = turned;
+        }
+        if let Some(repaired) = repair::repair(mesh, sphere, &progress.part("", 0.0, 0.5))? {
+            self.n_relaxations += repaired.n_relaxations;
+            self.report.n_moved = repaired.n_moved;
+            self.sphere = repaired.sphere;
+            return Ok(());
+        }
+        self.report = RepairReport {
+            fell_back_to_solver: true,
+            ..RepairReport::default()
+        };
+        let own = Solver::default().propose(hierarchy, &progress.part("", 0.5, 1.0))?;
+        self.n_relaxations += own.n_relaxations;
+        self.sphere = own.sphere;
+        Ok(())
+    }
 }
 
 #[cfg(test)]

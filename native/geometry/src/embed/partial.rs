@@ -77,7 +77,6 @@ impl Partial {
         &self.rings[vertex]
     }
 
-    #[cfg(test)]
     /// The ring of a vertex, starting at one of its neighbours.
     pub fn ring_from(&self, vertex: VertexId, first: VertexId) -> Vec<VertexId> {
         let mut ring = self.rings[vertex].clone();
@@ -85,7 +84,6 @@ impl Partial {
         ring
     }
 
-    #[cfg(test)]
     /// Whether collapsing a vertex into a neighbour keeps a closed surface: they have two common
     /// neighbours, and three vertices would be left besides.
     pub fn is_legal(&self, vertex: VertexId, into: VertexId) -> bool {
@@ -130,7 +128,6 @@ impl Partial {
         self.n_there += 1;
     }
 
-    #[cfg(test)]
     /// Collapses a vertex into the first of its ring; the link condition must hold.
     pub fn collapse(&mut self, Collapse { vertex, ring }: Collapse<'_>) {
         let last = ring.len() - 1;

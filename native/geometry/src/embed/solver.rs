@@ -38,8 +38,8 @@ impl OffsetPredictor for Solver {
         let mut n_relaxations = 0;
         // Triangles of equal size have the most room; relaxation brings the shape back later.
         for stiffness in [Stiffness::Shape, Stiffness::Equal] {
-            let mut growth = Growth::new(hierarchy, stiffness);
-            let grown = self.grow(&mut growth, progress);
+            let mut growth = Growth::tetrahedron(hierarchy, stiffness);
+            let grown = self.grow(hierarchy, &mut growth, progress);
             n_relaxations += growth.n_relaxations;
             match grown {
                 Err(GrowError::NoRoom { .. }) if stiffness == Stiffness::Shape => {}
@@ -63,11 +63,20 @@ impl OffsetPredictor for Solver {
 
 impl Solver {
     /// Undoes every round, with sweeps each time the number of vertices has grown enough.
-    fn grow(self, growth: &mut Growth, progress: &Progress) -> Result<(), GrowError> {
-        let n_vertices = growth.hierarchy.n_vertices();
+    fn grow(
+        self,
+        hierarchy: &CollapseHierarchy,
+        growth: &mut Growth,
+        progress: &Progress,
+    ) -> Result<(), GrowError> {
+        let n_vertices = hierarchy.n_vertices();
         let mut n_relaxed = 4;
-        for round in (0..growth.hierarchy.n_rounds()).rev() {
-            growth.insert_round(round, progress)?;
+        for round in (0..hierarchy.n_rounds()).rev() {
+            let collapses: Vec<_> = hierarchy
+                .round(round)
+                .map(|i| hierarchy.collapse(i))
+                .collect();
+            growth.insert_all(&collapses, progress)?;
             let n_there = growth.partial.n_there();
             let [factor, n_sweeps] = if n_there < 1_000 {
                 [1.15, f64::from(self.n_coarse_sweeps)]

@@ -1,3 +1,4 @@
+use super::partial::Partial;
 use super::*;
 use crate::hierarchy::{Collapse, HierarchyBuilder};
 use crate::mesh::{TriangleMesh, VertexId};
