@@ -8,6 +8,7 @@ pub mod hierarchy;
 pub mod measure;
 pub mod mesh;
 pub mod nearest;
+pub mod pipeline;
 pub mod progress;
 pub mod random;
 pub mod sparse;

@@ -127,3 +127,24 @@ pub fn mapped_cube(n: u32, map: impl Fn(DVec3) -> DVec3) -> TriangleMesh {
     }
     TriangleMesh::new(positions, faces).expect("a cube's surface is closed")
 }
+
+/// A ring of genus 1 with n × m quads, each cut in two.
+pub fn torus(n: u32, m: u32) -> TriangleMesh {
+    let angle = |i: u32, n: u32| f64::from(i) / f64::from(n) * std::f64::consts::TAU;
+    let point = |i: u32, j: u32| {
+        let (s, c) = angle(i, n).sin_cos();
+        let radius = 1.0 + 0.4 * angle(j, m).cos();
+        DVec3::new(c * radius, s * radius, 0.4 * angle(j, m).sin())
+    };
+    let positions = (0..n)
+        .flat_map(|i| (0..m).map(move |j| point(i, j)))
+        .collect();
+    let id = |i: u32, j: u32| VertexId((i % n) * m + j % m);
+    let faces = (0..n).flat_map(|i| {
+        (0..m).flat_map(move |j| {
+            let [a, b, c, d] = [id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)];
+            [[a, b, c], [a, c, d]]
+        })
+    });
+    TriangleMesh::new(positions, faces.collect()).expect("a torus is closed")
+}

@@ -1,0 +1,119 @@
+//! Why a run ends without a mesh.
+
+use thiserror::Error;
+
+use super::settings::{Kind, MAX_FACES, MIN_FACES, Primitive};
+use crate::progress::Cancelled;
+use crate::{clean, decimate, deform, embed, sphere};
+
+/// Why a run ends without a mesh; nothing was changed.
+#[derive(Debug, Error)]
+pub enum Error {
+    /// The count is out of range.
+    #[error("{faces} faces were asked for; {MIN_FACES} to {MAX_FACES} can be made")]
+    FacesOutOfRange {
+        /// What was asked for.
+        faces: usize,
+    },
+    /// The primitive has other polygons than were asked for.
+    #[error("the {} primitive makes {}, but {} were asked for", primitive.name(), primitive.kind().name(), kind.name())]
+    KindMismatch {
+        /// The primitive.
+        primitive: Primitive,
+        /// What was asked for.
+        kind: Kind,
+    },
+    /// Not one material per face.
+    #[error("{n_materials} material indices for {n_faces} faces")]
+    MaterialCount {
+        /// How many indices.
+        n_materials: usize,
+        /// How many faces.
+        n_faces: usize,
+    },
+    /// The mesh has borders.
+    #[error("{}, {}: only closed meshes can be done; fill the holes first", count(*n_loops, "border loop"), count(*n_edges, "border edge"))]
+    Open {
+        /// How many loops.
+        n_loops: usize,
+        /// How many edges they have together.
+        n_edges: usize,
+    },
+    /// The mesh has handles.
+    #[error("genus {genus}{}: only meshes without handles (genus 0) can be done; close the handles first", of_part(*part, *n_parts))]
+    Genus {
+        /// How many handles.
+        genus: i64,
+        /// Which part has them, from 1.
+        part: usize,
+        /// How many parts there are.
+        n_parts: usize,
+    },
+    /// The threads could not be started.
+    #[error("the threads could not be started: {0}")]
+    Threads(rayon::ThreadPoolBuildError),
+    /// The mesh cannot be mended.
+    #[error(transparent)]
+    Clean(clean::Error),
+    /// Decimation failed.
+    #[error(transparent)]
+    Decimate(decimate::Error),
+    /// The collapse to a tetrahedron failed.
+    #[error(transparent)]
+    Collapse(decimate::CollapseError),
+    /// The embedding failed.
+    #[error(transparent)]
+    Embed(embed::Error),
+    /// The primitive could not be made.
+    #[error(transparent)]
+    Sphere(sphere::AdaptiveError),
+    /// The primitive could not be laid on the surface.
+    #[error(transparent)]
+    Deform(deform::Error),
+    /// The user asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl Error {
+    /// Whether the user asked to stop.
+    pub fn is_cancelled(&self) -> bool {
+        matches!(self, Self::Cancelled(_))
+    }
+}
+
+/// Lifts a step's cancellation to that of the run.
+macro_rules! lift {
+    ($($module:ident :: $error:ident => $variant:ident),*) => {$(
+        impl From<$module::$error> for Error {
+            fn from(error: $module::$error) -> Self {
+                match error {
+                    $module::$error::Cancelled(cancelled) => Self::Cancelled(cancelled),
+                    error => Self::$variant(error),
+                }
+            }
+        }
+    )*};
+}
+
+lift!(
+    clean::Error => Clean,
+    decimate::Error => Decimate,
+    decimate::CollapseError => Collapse,
+    embed::Error => Embed,
+    sphere::AdaptiveError => Sphere,
+    deform::Error => Deform
+);
+
+fn count(n: usize, what: &str) -> String {
+    let ending = if n == 1 { "" } else { "s" };
+    format!("{n} {what}{ending}")
+}
+
+fn of_part(part: usize, n_parts: usize) -> String {
+    if n_parts == 1 {
+        String::new()
+    } else {
+        format!(" in part {part} of {n_parts}")
+    }
+}

@@ -1,0 +1,119 @@
+//! The frame of work: every mesh is cleaned, centred and scaled to a diagonal of 1 before a step
+//! sees it.
+
+use glam::DVec3;
+
+use crate::clean::{self, Cleaned};
+use crate::mesh::{FaceId, FaceMap, Id, PolygonMesh, TriangleMesh, bounds};
+use crate::progress::Progress;
+
+/// A cleaned mesh in the frame of work.
+pub struct Prepared {
+    pub mesh: TriangleMesh,
+    pub frame: Frame,
+    pub report: clean::Report,
+    source: FaceMap<FaceId>,
+}
+
+impl Prepared {
+    /// Cleans first: welding needs the input's own coordinates, and a vertex without a face must
+    /// not stretch the frame.
+    pub fn new(input: &PolygonMesh, progress: &Progress<'_>) -> Result<Self, clean::Error> {
+        let Cleaned {
+            mesh,
+            source,
+            report,
+        } = clean::clean(input, progress)?;
+        let frame = Frame::new(bounds(mesh.positions()));
+        let mesh = mesh.with_positions(frame.enter(mesh.positions()));
+        Ok(Self {
+            mesh,
+            frame,
+            report,
+            source,
+        })
+    }
+
+    /// The material of each triangle.
+    pub fn materials(&self, of_faces: &[i32]) -> Vec<i32> {
+        self.source
+            .iter()
+            .map(|&face| of_faces[face.index()])
+            .collect()
+    }
+}
+
+/// A shift and a scale, to be undone at the end.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Frame {
+    centre: DVec3,
+    diagonal: f64,
+}
+
+impl Frame {
+    /// The frame of a bounding box; a box without size is only shifted.
+    pub fn new([low, high]: [DVec3; 2]) -> Self {
+        // Halves first: the box of finite points can be larger than the largest number.
+        let half = high / 2.0 - low / 2.0;
+        let largest = half.max_element();
+        // The length of a tiny or huge vector under- or overflows when squared.
+        let diagonal = if largest > 0.0 {
+            2.0 * largest * (half / largest).length()
+        } else {
+            1.0
+        };
+        Self {
+            centre: low / 2.0 + high / 2.0,
+            diagonal: diagonal.min(f64::MAX),
+        }
+    }
+
+    /// Into the frame: centre 0, diagonal 1.
+    pub fn enter(&self, points: &[DVec3]) -> Vec<DVec3> {
+        points
+            .iter()
+            .map(|&p| (p - self.centre) / self.diagonal)
+            .collect()
+    }
+
+    /// Back from the frame.
+    pub fn leave(&self, points: &[DVec3]) -> Vec<DVec3> {
+        points
+            .iter()
+            .map(|&p| p * self.diagonal + self.centre)
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn meshes_of_any_size_enter_with_a_diagonal_of_one_and_come_back() {
+        for (size, shift) in [
+            (1.0, 0.0),
+            (1e30, 0.0),
+            (1e-30, 0.0),
+            (1e300, 0.0),
+            (1.0, 1e7),
+        ] {
+            let points = [DVec3::ZERO, DVec3::new(3.0, 4.0, 12.0) * size].map(|p| p + shift);
+            let frame = Frame::new(bounds(&points));
+            let inside = frame.enter(&points);
+            assert!((inside[0].distance(inside[1]) - 1.0).abs() < 1e-8, "{size}");
+            for (back, point) in frame.leave(&inside).iter().zip(points) {
+                assert!(
+                    back.distance(point) <= 1e-8 * size,
+                    "{size}: {back} {point}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_single_point_is_only_shifted() {
+        let frame = Frame::new([DVec3::ONE; 2]);
+        assert_eq!(frame.leave(&frame.enter(&[DVec3::ONE])), [DVec3::ONE]);
+    }
+}

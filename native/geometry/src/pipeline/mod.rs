@@ -1,0 +1,191 @@
+//! The verbs in order: one mesh in, one mesh out.
+//!
+//! ```text
+//! polygons ─ clean ─▶ triangles ─ split ─▶ part ─┬─ decimate ─▶ embed ─▶ sphere ─┐
+//!                                                └──────── target ───────▶ deform ┴─ join ─▶ transfer ─▶ polygons
+//! ```
+//!
+//! Every part is a closed component of genus 0 and gets its share of the faces by area. The map is
+//! made on a decimated mesh; the result is laid on the part at full resolution.
+
+mod clock;
+mod error;
+mod frame;
+mod join;
+mod part;
+mod report;
+mod settings;
+mod split;
+mod verbs;
+
+pub use clock::{Step, peak_memory_mb};
+pub use error::Error;
+pub use report::{PartReport, Reduced, Report};
+pub use settings::{Kind, MAX_FACES, MIN_FACES, Primitive, Settings};
+pub use verbs::{Decimated, EmbedReport, EmbeddedParts, decimate, embed};
+
+use glam::DVec3;
+
+use crate::embed::OffsetPredictor;
+use crate::mesh::PolygonMesh;
+use crate::nearest::Bvh;
+use crate::progress::{Cancelled, Progress};
+use crate::{measure, transfer};
+use clock::Clock;
+use frame::Prepared;
+use part::PartJob;
+
+/// The version of Orbflow.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// What comes in.
+#[derive(Clone, Copy, Debug)]
+pub struct Input<'a> {
+    /// The mesh.
+    pub mesh: &'a PolygonMesh,
+    /// The material of each of its faces.
+    pub materials: Option<&'a [i32]>,
+    /// The same mesh, already reduced by somebody else; used where it is closed, in one piece and
+    /// of the same Euler number, and said in the report otherwise.
+    pub reduced: Option<&'a PolygonMesh>,
+}
+
+impl<'a> Input<'a> {
+    /// A mesh alone.
+    pub fn new(mesh: &'a PolygonMesh) -> Self {
+        Self {
+            mesh,
+            materials: None,
+            reduced: None,
+        }
+    }
+}
+
+/// What goes out.
+#[derive(Clone, Debug)]
+pub struct Remeshed {
+    /// The new mesh.
+    pub mesh: PolygonMesh,
+    /// The material of each new face, where the input had materials.
+    pub materials: Option<Vec<i32>>,
+    /// The point of the unit sphere of each new vertex, each part on a sphere of its own.
+    pub sphere: Vec<DVec3>,
+    /// What is told of the run.
+    pub report: Report,
+}
+
+/// Rebuilds a mesh by deforming a sphere into each of its parts.
+///
+/// Keeps the topology, the frame of reference, the direction of the faces and their materials;
+/// does not keep vertices, edges or anything else that lies on them.
+///
+/// # Errors
+/// What is wrong with the settings or with the mesh, or that the run was cancelled.
+pub fn remesh(
+    input: Input<'_>,
+    settings: &Settings,
+    predictor: &dyn OffsetPredictor,
+    progress: &Progress<'_>,
+) -> Result<Remeshed, Error> {
+    settings.check()?;
+    input.check()?;
+    let pool = thread_pool(settings.threads)?;
+    pool.install(|| run(input, settings, predictor, progress))
+}
+
+fn run(
+    input: Input<'_>,
+    settings: &Settings,
+    predictor: &dyn OffsetPredictor,
+    progress: &Progress<'_>,
+) -> Result<Remeshed, Error> {
+    let mut clock = Clock::default();
+    let stage = progress.part("clean", 0.0, 0.02);
+    let prepared = clock.step("clean", || Prepared::new(input.mesh, &stage))?;
+    let parts = clock.step("split", || split::split(&prepared.mesh))?;
+    let shares = split::share(&parts, settings.faces, settings.kind.fewest_faces());
+    let reduced = input.reduced.filter(|_| parts.len() == 1);
+    let reduced = reduced.map(|r| r.with_positions(prepared.frame.enter(r.positions())));
+
+    let total = prepared.mesh.n_faces();
+    let mut done = 0;
+    let mut results = Vec::with_capacity(parts.len());
+    for (part, n_faces) in parts.iter().zip(shares) {
+        let from = share_of_work(done, total);
+        done += part.n_faces();
+        let progress = progress.part("", from, share_of_work(done, total));
+        let job = PartJob {
+            part,
+            n_faces,
+            settings,
+            predictor,
+            reduced: reduced.as_ref(),
+        };
+        results.push(job.run(&mut clock, &progress)?);
+    }
+    let joined = join::join(results);
+
+    let stage = progress.part("transfer", 0.9, 0.92);
+    let materials = input.materials.map(|of_faces| {
+        clock.step("transfer", || {
+            transfer_materials(&prepared, of_faces, &joined.mesh, &stage)
+        })
+    });
+    let materials = materials.transpose()?;
+    let mesh = joined
+        .mesh
+        .with_positions(prepared.frame.leave(joined.mesh.positions()));
+    let report = Report {
+        version: VERSION,
+        settings: settings.clone(),
+        input: measure::topology(input.mesh),
+        clean: prepared.report,
+        output: measure::topology(&mesh),
+        embedding: joined.embedding,
+        parts: joined.parts,
+        steps: clock.into_steps(),
+        peak_memory_mb: peak_memory_mb(),
+    };
+    progress.at(1.0)?;
+    Ok(Remeshed {
+        mesh,
+        materials,
+        sphere: joined.sphere,
+        report,
+    })
+}
+
+fn transfer_materials(
+    prepared: &Prepared,
+    of_faces: &[i32],
+    new: &PolygonMesh,
+    progress: &Progress<'_>,
+) -> Result<Vec<i32>, Cancelled> {
+    let source = Bvh::of_mesh(&prepared.mesh);
+    transfer::materials(&source, &prepared.materials(of_faces), new, progress)
+}
+
+/// Parts take the shares 0.02 to 0.9 of the progress, by their faces.
+fn share_of_work(done: usize, total: usize) -> f64 {
+    0.02 + 0.88 * done as f64 / total.max(1) as f64
+}
+
+fn thread_pool(threads: usize) -> Result<rayon::ThreadPool, Error> {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .map_err(Error::Threads)
+}
+
+impl Input<'_> {
+    fn check(&self) -> Result<(), Error> {
+        let n_faces = self.mesh.n_faces();
+        match self.materials {
+            Some(materials) if materials.len() != n_faces => Err(Error::MaterialCount {
+                n_materials: materials.len(),
+                n_faces,
+            }),
+            _ => Ok(()),
+        }
+    }
+}

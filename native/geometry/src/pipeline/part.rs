@@ -1,0 +1,187 @@
+//! One part: decimate, embed, make the sphere, deform it.
+
+use glam::DVec3;
+
+use super::Error;
+use super::clock::Clock;
+use super::report::{PartReport, Reduced};
+use super::settings::{Kind, Primitive, Settings};
+use crate::embed::{Embedded, OffsetPredictor};
+use crate::mesh::{PolygonMesh, TriangleMesh, VertexId};
+use crate::progress::Progress;
+use crate::sphere_map::SphereMap;
+use crate::{decimate, deform, embed, measure, sphere};
+
+/// The map's mesh has this many vertices for each vertex of the result: below 2 the map misses
+/// detail that the faces could show, above 4 only time grows.
+const MAP_VERTICES_PER_VERTEX: f64 = 2.0;
+/// Fewer vertices than this are not worth saving.
+const LEAST_MAP_VERTICES: usize = 3_000;
+
+/// One part and what is to be made of it.
+pub struct PartJob<'a> {
+    pub part: &'a TriangleMesh,
+    pub n_faces: usize,
+    pub settings: &'a Settings,
+    pub predictor: &'a dyn OffsetPredictor,
+    /// The part as somebody else reduced it.
+    pub reduced: Option<&'a PolygonMesh>,
+}
+
+/// What has become of a part.
+pub struct PartResult {
+    pub mesh: PolygonMesh,
+    pub sphere: Vec<DVec3>,
+    /// The area of the part, the weight of its figures.
+    pub area: f64,
+    pub report: PartReport,
+}
+
+struct Reduction {
+    mesh: TriangleMesh,
+    reduced: Option<Reduced>,
+    report: Option<decimate::Report>,
+}
+
+impl PartJob<'_> {
+    pub fn run(&self, clock: &mut Clock, progress: &Progress<'_>) -> Result<PartResult, Error> {
+        let full = self.part;
+        let stage = progress.part("decimate", 0.0, 0.2);
+        let reduction = clock.step("decimate", || self.reduce(&stage))?;
+        let stage = progress.part("embed", 0.2, 0.6);
+        let Embedded {
+            map,
+            report: embedding,
+        } = clock.step("embed", || {
+            embed_mesh(reduction.mesh, self.predictor, &stage)
+        })?;
+        let stage = progress.part("sphere", 0.6, 0.8);
+        let (primitive, sphere) = clock.step("sphere", || self.primitive(&map, &stage))?;
+        let stage = progress.part("deform", 0.8, 1.0);
+        let deformed = clock.step("deform", || {
+            let target = deform::Target::new(full.clone());
+            deform::deform(
+                &map,
+                &primitive,
+                &target,
+                &deform::Settings::default(),
+                &stage,
+            )
+        })?;
+        let report = PartReport {
+            n_input_faces: full.n_faces(),
+            n_asked_faces: self.n_faces,
+            n_faces: deformed.mesh.n_faces(),
+            reduced: reduction.reduced,
+            decimate: reduction.report,
+            embedding,
+            sphere,
+            deform: deformed.report,
+        };
+        let area = measure::total_area(full);
+        Ok(PartResult {
+            mesh: deformed.mesh,
+            sphere: deformed.sphere,
+            area,
+            report,
+        })
+    }
+
+    /// Brings the part down to the size of the map.
+    fn reduce(&self, progress: &Progress<'_>) -> Result<Reduction, Error> {
+        let full = self.part;
+        let (start, reduced) = match self.reduced.map(|mesh| usable(mesh, full)) {
+            Some(Ok(mesh)) => {
+                let n_faces = mesh.n_faces();
+                (Some(mesh), Some(Reduced::Used { n_faces }))
+            }
+            Some(Err(reason)) => (None, Some(Reduced::Refused { reason })),
+            None => (None, None),
+        };
+        let start = start.unwrap_or_else(|| full.clone());
+        let n_faces = self.n_map_faces();
+        if start.n_faces() <= n_faces {
+            return Ok(Reduction {
+                mesh: start,
+                reduced,
+                report: None,
+            });
+        }
+        let settings = decimate::Settings {
+            n_faces,
+            ..decimate::Settings::default()
+        };
+        let simplified = decimate::simplify(&start, &settings, progress)?;
+        Ok(Reduction {
+            mesh: simplified.mesh,
+            reduced,
+            report: Some(simplified.report),
+        })
+    }
+
+    fn n_map_faces(&self) -> usize {
+        let per_face = match self.settings.kind {
+            Kind::Triangles => 0.5,
+            Kind::Quads => 1.0,
+        };
+        let wanted = self.n_faces as f64 * per_face * MAP_VERTICES_PER_VERTEX;
+        2 * (wanted as usize).max(LEAST_MAP_VERTICES)
+    }
+
+    fn primitive(
+        &self,
+        map: &SphereMap,
+        progress: &Progress<'_>,
+    ) -> Result<(PolygonMesh, Option<sphere::Report>), Error> {
+        let settings = sphere::Settings {
+            n_faces: self.n_faces,
+            seed: self.settings.seed,
+            ..sphere::Settings::default()
+        };
+        let fixed = match self.settings.primitive() {
+            Primitive::Adaptive => {
+                let adaptive = sphere::adaptive(map, &settings, progress)?;
+                return Ok((adaptive.primitive, Some(adaptive.report)));
+            }
+            Primitive::QuadSphere => sphere::quad_sphere(sphere::quad_sphere_counts(self.n_faces)),
+            Primitive::Icosphere => sphere::icosphere(sphere::icosphere_frequency(self.n_faces)),
+        };
+        Ok((fixed, None))
+    }
+}
+
+/// Records the collapses of a mesh and embeds it.
+pub fn embed_mesh(
+    mesh: TriangleMesh,
+    predictor: &dyn OffsetPredictor,
+    progress: &Progress<'_>,
+) -> Result<Embedded, Error> {
+    let hierarchy = decimate::collapse_to_tetrahedron(mesh, &progress.part("", 0.0, 0.2))?;
+    let settings = embed::Settings::default();
+    Ok(embed::embed(
+        &hierarchy,
+        predictor,
+        &settings,
+        &progress.part("", 0.2, 1.0),
+    )?)
+}
+
+/// The triangles of a mesh that was reduced outside, or why they cannot stand for the part.
+fn usable(reduced: &PolygonMesh, full: &TriangleMesh) -> Result<TriangleMesh, String> {
+    let faces: Option<Vec<[VertexId; 3]>> =
+        reduced.faces().map(|face| face.try_into().ok()).collect();
+    let faces = faces.ok_or("it has faces that are not triangles")?;
+    let mesh = TriangleMesh::new(reduced.positions().to_vec(), faces).map_err(|e| e.to_string())?;
+    if !mesh.is_closed() {
+        return Err("it is not closed".to_owned());
+    }
+    let n_parts = mesh.face_components().1;
+    if n_parts != 1 {
+        return Err(format!("it has {n_parts} parts"));
+    }
+    let [found, wanted] = [mesh.euler_number(), full.euler_number()];
+    if found != wanted {
+        return Err(format!("its Euler number is {found}, not {wanted}"));
+    }
+    Ok(mesh)
+}

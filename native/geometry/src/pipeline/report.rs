@@ -1,0 +1,68 @@
+//! What is told of a run.
+
+use serde::Serialize;
+
+use super::clock::Step;
+use super::settings::Settings;
+use crate::measure::Topology;
+use crate::{clean, decimate, deform, embed, sphere};
+
+/// What is told of a run; the program writes it as JSON.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// The version of Orbflow.
+    pub version: &'static str,
+    /// What was asked for.
+    pub settings: Settings,
+    /// The mesh that came in.
+    pub input: Topology,
+    /// What had to be mended in it.
+    pub clean: clean::Report,
+    /// The mesh that went out.
+    pub output: Topology,
+    /// The embeddings of all parts together.
+    pub embedding: embed::Report,
+    /// Each part, in the order of its first face.
+    pub parts: Vec<PartReport>,
+    /// How long each step took.
+    pub steps: Vec<Step>,
+    /// The most memory that the process held, in MiB; none where the system does not tell.
+    pub peak_memory_mb: Option<f64>,
+}
+
+/// What is told of one part.
+#[derive(Clone, Debug, Serialize)]
+pub struct PartReport {
+    /// How many triangles came in.
+    pub n_input_faces: usize,
+    /// How many faces it was to get.
+    pub n_asked_faces: usize,
+    /// How many faces it got.
+    pub n_faces: usize,
+    /// What became of the mesh that was reduced outside; none when there was none.
+    pub reduced: Option<Reduced>,
+    /// How it was reduced before the embedding; none when it was small enough.
+    pub decimate: Option<decimate::Report>,
+    /// Its embedding.
+    pub embedding: embed::Report,
+    /// How the adaptive primitive was made; none for a fixed one.
+    pub sphere: Option<sphere::Report>,
+    /// How the primitive was laid on the surface.
+    pub deform: deform::Report,
+}
+
+/// Whether a mesh that was reduced outside could be used.
+#[derive(Clone, PartialEq, Eq, Debug, Serialize)]
+#[serde(tag = "status", rename_all = "kebab-case")]
+pub enum Reduced {
+    /// It was used in the place of our own decimation.
+    Used {
+        /// How many triangles it has.
+        n_faces: usize,
+    },
+    /// It was not used.
+    Refused {
+        /// Why not.
+        reason: String,
+    },
+}

@@ -1,0 +1,165 @@
+//! Splits a mesh into parts that one sphere can cover, and shares the faces among them.
+//!
+//! Today a part is a closed component of genus 0; a mesh with a border or with handles is refused
+//! with its numbers. Filling borders and cutting handles (METHOD 3) belong here: they turn such a
+//! mesh into closed parts of genus 0 with tagged faces, which `join` takes out again.
+
+use super::Error;
+use crate::measure;
+use crate::mesh::{FaceId, Id, TriangleMesh, VertexId};
+
+/// The components of a mesh, closed and of genus 0, in the order of their first faces.
+pub fn split(whole: &TriangleMesh) -> Result<Vec<TriangleMesh>, Error> {
+    refuse_borders(whole)?;
+    let (component, n) = whole.face_components();
+    let mut faces: Vec<Vec<FaceId>> = vec![Vec::new(); n];
+    for face in whole.face_ids() {
+        faces[component[face.index()] as usize].push(face);
+    }
+    let mut local = vec![VertexId(u32::MAX); whole.n_vertices()];
+    let parts: Vec<_> = faces
+        .iter()
+        .map(|f| take_part(whole, f, &mut local))
+        .collect();
+    for (index, part) in parts.iter().enumerate() {
+        let genus = (2 - part.euler_number()) / 2;
+        if genus != 0 {
+            return Err(Error::Genus {
+                genus,
+                part: index + 1,
+                n_parts: n,
+            });
+        }
+    }
+    Ok(parts)
+}
+
+fn refuse_borders(whole: &TriangleMesh) -> Result<(), Error> {
+    let loops = whole.border_loops();
+    if loops.is_empty() {
+        return Ok(());
+    }
+    Err(Error::Open {
+        n_loops: loops.len(),
+        n_edges: loops.iter().map(Vec::len).sum(),
+    })
+}
+
+fn take_part(whole: &TriangleMesh, faces: &[FaceId], local: &mut [VertexId]) -> TriangleMesh {
+    let mut positions = Vec::new();
+    let mut vertex = |v: VertexId| {
+        let id = &mut local[v.index()];
+        if id.0 == u32::MAX {
+            *id = VertexId::from_index(positions.len());
+            positions.push(whole.position(v));
+        }
+        *id
+    };
+    let corners = faces
+        .iter()
+        .map(|&face| whole.face(face).map(&mut vertex))
+        .collect();
+    TriangleMesh::new(positions, corners).expect("a component of a mesh is a mesh")
+}
+
+/// Shares `n_faces` among the parts by area; each gets at least `least`.
+///
+/// The largest remainders are rounded up, so the shares sum to `n_faces` unless the least shares
+/// alone exceed it.
+pub fn share(parts: &[TriangleMesh], n_faces: usize, least: usize) -> Vec<usize> {
+    let areas: Vec<f64> = parts.iter().map(measure::total_area).collect();
+    share_by_weight(&areas, n_faces, least)
+}
+
+fn share_by_weight(weights: &[f64], n_faces: usize, least: usize) -> Vec<usize> {
+    let mut shares = vec![least; weights.len()];
+    let mut order: Vec<usize> = (0..weights.len()).collect();
+    order.sort_by(|&a, &b| weights[a].total_cmp(&weights[b]));
+    // From small to large: who would get less than the least leaves more to share for the others.
+    let mut left = n_faces;
+    let mut total: f64 = weights.iter().sum();
+    for (rank, &i) in order.iter().enumerate() {
+        let wanted = if total > 0.0 {
+            left as f64 * weights[i] / total
+        } else {
+            0.0
+        };
+        let last = rank + 1 == order.len();
+        let share = if last { left } else { wanted.round() as usize };
+        shares[i] = share.max(least);
+        left = left.saturating_sub(shares[i]);
+        total -= weights[i];
+    }
+    shares
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shapes;
+
+    fn joined(meshes: &[TriangleMesh]) -> TriangleMesh {
+        let mut positions = Vec::new();
+        let mut faces = Vec::new();
+        for mesh in meshes {
+            let start = positions.len() as u32;
+            positions.extend_from_slice(mesh.positions());
+            faces.extend(
+                mesh.faces()
+                    .iter()
+                    .map(|f| f.map(|v| VertexId(v.0 + start))),
+            );
+        }
+        TriangleMesh::new(positions, faces).unwrap()
+    }
+
+    #[test]
+    fn one_closed_part_is_split_into_itself() {
+        let mesh = shapes::blob(3, 4);
+        let parts = split(&mesh).unwrap();
+        assert_eq!(parts.len(), 1);
+        assert_eq!(parts[0], mesh);
+    }
+
+    #[test]
+    fn components_keep_their_faces_in_order() {
+        let whole = joined(&[shapes::cuboid(2), shapes::sphere(3)]);
+        let parts = split(&whole).unwrap();
+        assert_eq!(
+            parts.iter().map(TriangleMesh::n_faces).collect::<Vec<_>>(),
+            [48, 108]
+        );
+        let triangles = parts
+            .iter()
+            .flat_map(|p| p.face_ids().map(|face| p.triangle(face)));
+        for (face, triangle) in whole.face_ids().zip(triangles) {
+            assert_eq!(triangle, whole.triangle(face));
+        }
+    }
+
+    #[test]
+    fn an_open_mesh_is_refused_with_its_borders_counted() {
+        let mut faces = shapes::sphere(3).faces().to_vec();
+        faces.pop();
+        let mesh = TriangleMesh::new(shapes::sphere(3).positions().to_vec(), faces).unwrap();
+        let message = split(&mesh).unwrap_err().to_string();
+        assert!(
+            message.starts_with("1 border loop, 3 border edges: "),
+            "{message}"
+        );
+    }
+
+    #[test]
+    fn shares_follow_the_area_sum_up_and_keep_the_least() {
+        assert_eq!(share_by_weight(&[1.0, 3.0], 100, 4), [25, 75]);
+        assert_eq!(
+            share_by_weight(&[1.0, 1e-9, 1.0], 100, 4)
+                .iter()
+                .sum::<usize>(),
+            100
+        );
+        assert_eq!(share_by_weight(&[1.0, 1e-9], 100, 4), [96, 4]);
+        assert_eq!(share_by_weight(&[1.0; 3], 5, 4), [4, 4, 4]);
+        assert_eq!(share_by_weight(&[0.0; 2], 10, 4).iter().sum::<usize>(), 10);
+    }
+}
