@@ -29,7 +29,7 @@ impl Clock {
         let time_ms = start.elapsed().as_secs_f64() * 1e3;
         let cpu_ms = cpu_time()
             .zip(cpu)
-            .map(|(end, start)| (end - start).as_secs_f64() * 1e3);
+            .map(|(end, start)| end.saturating_sub(start).as_secs_f64() * 1e3);
         match self.steps.iter_mut().find(|step| step.name == name) {
             Some(step) => {
                 step.time_ms += time_ms;

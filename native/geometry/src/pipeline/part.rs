@@ -107,10 +107,7 @@ impl PartJob<'_> {
                 report: None,
             });
         }
-        let settings = decimate::Settings {
-            n_faces,
-            ..decimate::Settings::default()
-        };
+        let settings = decimate::Settings { n_faces };
         let simplified = decimate::simplify(&start, &settings, progress)?;
         Ok(Reduction {
             mesh: simplified.mesh,

@@ -137,10 +137,7 @@ pub fn decimate(
     check_faces(n_faces)?;
     input.check()?;
     let prepared = Prepared::new(input.mesh, &progress.part("clean", 0.0, 0.1))?;
-    let settings = decimation::Settings {
-        n_faces,
-        ..decimation::Settings::default()
-    };
+    let settings = decimation::Settings { n_faces };
     let stage = progress.part("decimate", 0.1, 0.9);
     let simplified = decimation::simplify(&prepared.mesh, &settings, &stage)?;
     let small = triangles(&simplified.mesh);
