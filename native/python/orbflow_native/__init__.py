@@ -1,5 +1,39 @@
-"""Rebuilds a mesh with good edge flow by deforming a sphere into it: arrays in, arrays out."""
+"""Rebuilds a mesh with good edge flow by deforming a sphere into it: arrays in, arrays out.
 
-from ._core import Cancelled, CancelToken, InputError, OrbflowError, __version__
+A mesh is three arrays: `positions (V, 3) float32`, `loop_start (F,) int32` (where the corners of
+each face start), `corner_vert (L,) int32` (the vertex of each corner).
+"""
 
-__all__ = ["CancelToken", "Cancelled", "InputError", "OrbflowError", "__version__"]
+from ._core import (
+    DEFAULTS,
+    MAX_FACES,
+    MIN_FACES,
+    Cancelled,
+    CancelToken,
+    Decimated,
+    Embedded,
+    InputError,
+    OrbflowError,
+    Remeshed,
+    __version__,
+    decimate,
+    embed,
+)
+from .bulk import remesh
+
+__all__ = [
+    "DEFAULTS",
+    "MAX_FACES",
+    "MIN_FACES",
+    "CancelToken",
+    "Cancelled",
+    "Decimated",
+    "Embedded",
+    "InputError",
+    "OrbflowError",
+    "Remeshed",
+    "__version__",
+    "decimate",
+    "embed",
+    "remesh",
+]

@@ -1,4 +1,19 @@
-__version__: str
+"""The compiled half of the package `orbflow_native`."""
+
+from collections.abc import Callable
+from typing import Any, Final, TypeAlias, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+Float: TypeAlias = NDArray[np.float32]
+Int: TypeAlias = NDArray[np.int32]
+Listener: TypeAlias = Callable[[str, float], Any]
+
+__version__: Final[str]
+MIN_FACES: Final[int]
+MAX_FACES: Final[int]
+DEFAULTS: Final[dict[str, Any]]
 
 class OrbflowError(Exception):
     """What every error of Orbflow derives from."""
@@ -9,13 +24,133 @@ class InputError(OrbflowError):
 class Cancelled(OrbflowError):
     """The job was stopped by its cancel token; nothing was changed."""
 
+@final
 class CancelToken:
     """A flag that another thread raises to stop a running job."""
 
     def __new__(cls) -> CancelToken: ...
     def cancel(self) -> None:
-        """Raise the flag; the job stops within a fraction of a second and raises `Cancelled`."""
+        """Raises the flag; the job stops within a fraction of a second and raises `Cancelled`."""
 
     @property
     def is_cancelled(self) -> bool:
         """Whether the flag is up."""
+
+@final
+class Remeshed:
+    """A new mesh and how it came about."""
+
+    @property
+    def positions(self) -> Float:
+        """`(V, 3) float32`: the positions of the vertices."""
+
+    @property
+    def loop_start(self) -> Int:
+        """`(F,) int32`: where the corners of each face start."""
+
+    @property
+    def corner_vert(self) -> Int:
+        """`(L,) int32`: the vertex of each corner."""
+
+    @property
+    def material_index(self) -> Int | None:
+        """`(F,) int32`: the material of each face; `None` when the input had none."""
+
+    @property
+    def sphere(self) -> Float:
+        """`(V, 3) float32`: where each vertex lies on the unit sphere of its part."""
+
+    @property
+    def report(self) -> dict[str, Any]:
+        """What is told of the run."""
+
+@final
+class Embedded:
+    """A mesh of triangles and its map to the sphere."""
+
+    @property
+    def positions(self) -> Float:
+        """`(V, 3) float32`: the positions of the vertices."""
+
+    @property
+    def loop_start(self) -> Int:
+        """`(F,) int32`: where the corners of each face start."""
+
+    @property
+    def corner_vert(self) -> Int:
+        """`(L,) int32`: the vertex of each corner."""
+
+    @property
+    def sphere(self) -> Float:
+        """`(V, 3) float32`: where each vertex lies on the unit sphere of its part."""
+
+    @property
+    def report(self) -> dict[str, Any]:
+        """What is told of the run."""
+
+@final
+class Decimated:
+    """A mesh with fewer triangles."""
+
+    @property
+    def positions(self) -> Float:
+        """`(V, 3) float32`: the positions of the vertices."""
+
+    @property
+    def loop_start(self) -> Int:
+        """`(F,) int32`: where the corners of each face start."""
+
+    @property
+    def corner_vert(self) -> Int:
+        """`(L,) int32`: the vertex of each corner."""
+
+    @property
+    def material_index(self) -> Int | None:
+        """`(F,) int32`: the material of each face; `None` when the input had none."""
+
+    @property
+    def report(self) -> dict[str, Any]:
+        """What is told of the run."""
+
+def remesh(
+    positions: Float,
+    loop_start: Int,
+    corner_vert: Int,
+    *,
+    faces: int = 2000,
+    kind: str = "quads",
+    primitive: str | None = None,
+    predictor: str = "solver",
+    threads: int = 0,
+    seed: int = 0,
+    scale: tuple[float, float, float] | None = None,
+    material_index: Int | None = None,
+    reduced: tuple[Float, Int] | None = None,
+    progress: Listener | None = None,
+    cancel: CancelToken | None = None,
+) -> Remeshed:
+    """Rebuilds a mesh by deforming a sphere into each of its parts."""
+
+def embed(
+    positions: Float,
+    loop_start: Int,
+    corner_vert: Int,
+    *,
+    predictor: str = "solver",
+    threads: int = 0,
+    progress: Listener | None = None,
+    cancel: CancelToken | None = None,
+) -> Embedded:
+    """Maps every vertex of a mesh to the unit sphere, at full resolution."""
+
+def decimate(
+    positions: Float,
+    loop_start: Int,
+    corner_vert: Int,
+    *,
+    faces: int = 2000,
+    material_index: Int | None = None,
+    progress: Listener | None = None,
+    cancel: CancelToken | None = None,
+) -> Decimated:
+    """Lowers the number of triangles of a mesh; borders and handles are kept."""

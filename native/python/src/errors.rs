@@ -1,7 +1,9 @@
 //! The one place that turns errors of the core into Python exceptions.
 
+use orbflow_geometry::pipeline;
 use pyo3::create_exception;
 use pyo3::exceptions::PyException;
+use pyo3::prelude::*;
 
 create_exception!(
     orbflow_native,
@@ -21,3 +23,25 @@ create_exception!(
     OrbflowError,
     "The job was stopped by its cancel token; nothing was changed."
 );
+
+/// The error of a verb: the user stopped it, or the input cannot be done.
+pub trait VerbError: std::error::Error + Send {
+    /// Whether the user stopped it.
+    fn is_cancelled(&self) -> bool;
+}
+
+impl VerbError for pipeline::Error {
+    fn is_cancelled(&self) -> bool {
+        self.is_cancelled()
+    }
+}
+
+/// The exception for the error of a verb.
+pub fn exception(error: &impl VerbError) -> PyErr {
+    let text = error.to_string();
+    if error.is_cancelled() {
+        Cancelled::new_err(text)
+    } else {
+        InputError::new_err(text)
+    }
+}

@@ -4,21 +4,39 @@
 //! thread without the interpreter's lock, [`errors`] is the one place that turns errors into
 //! exceptions. The Python package around it is in `native/python/orbflow_native`.
 
+mod arrays;
+mod decimate;
+mod embed;
 mod errors;
 mod job;
+mod remesh;
+mod report;
 
 /// The compiled half of the package `orbflow_native`.
 #[pyo3::pymodule]
 mod _core {
+    use orbflow_geometry::pipeline;
     use pyo3::prelude::*;
 
+    #[pymodule_export]
+    use crate::decimate::{Decimated, decimate};
+    #[pymodule_export]
+    use crate::embed::{Embedded, embed};
     #[pymodule_export]
     use crate::errors::{Cancelled, InputError, OrbflowError};
     #[pymodule_export]
     use crate::job::CancelToken;
+    #[pymodule_export]
+    use crate::remesh::{Remeshed, remesh};
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        module.add("__version__", env!("CARGO_PKG_VERSION"))
+        module.add("MIN_FACES", pipeline::MIN_FACES)?;
+        module.add("MAX_FACES", pipeline::MAX_FACES)?;
+        module.add(
+            "DEFAULTS",
+            crate::report::dict(module.py(), &pipeline::Settings::default())?,
+        )?;
+        module.add("__version__", pipeline::VERSION)
     }
 }

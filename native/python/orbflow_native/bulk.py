@@ -1,0 +1,148 @@
+"""The bulk reduction of large meshes by fast-simplification, where it is installed.
+
+It holds the interpreter's lock while it works and cannot be stopped, so it runs in a process of its
+own that is ended when the user cancels. The core takes its result only when it is closed, manifold
+and of equal Euler number, says in the report what it did, and otherwise reduces the mesh itself.
+"""
+
+import importlib.util
+import io
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+
+#: Below this many triangles the core's own reduction is over before a process has started.
+LARGE = 200_000
+#: How many triangles are left: enough for any detail that the embedding sees.
+REDUCED = 60_000
+
+_TICK_S = 0.05
+_CHILD = """
+import io, sys, numpy, fast_simplification
+given, answer = io.BytesIO(sys.stdin.buffer.read()), io.BytesIO()
+points, triangles = numpy.load(given), numpy.load(given)
+reduced = fast_simplification.simplify(points, triangles, target_count=int(sys.argv[1]))
+numpy.save(answer, numpy.ascontiguousarray(reduced[0], numpy.float32))
+numpy.save(answer, numpy.ascontiguousarray(reduced[1], numpy.int32))
+sys.stdout.buffer.write(answer.getvalue())
+"""
+
+Float = NDArray[np.float32]
+Int = NDArray[np.int32]
+
+
+def remesh(
+    positions: Float,
+    loop_start: Int,
+    corner_vert: Int,
+    *,
+    faces: int = 2000,
+    kind: str = "quads",
+    primitive: str | None = None,
+    predictor: str = "solver",
+    threads: int = 0,
+    seed: int = 0,
+    scale: tuple[float, float, float] | None = None,
+    material_index: Int | None = None,
+    reduced: tuple[Float, Int] | None = None,
+    progress: Callable[[str, float], Any] | None = None,
+    cancel: _core.CancelToken | None = None,
+) -> _core.Remeshed:
+    """Rebuilds a mesh by deforming a sphere into each of its parts.
+
+    Keeps the topology, the direction of the faces and their materials. `kind` is "quads" or
+    "triangles"; `primitive` is "quad-sphere", "adaptive", "icosphere" or `None` for what suits the
+    kind. `scale` is the scale of the object: faces are even in the scaled space, the result is in
+    the space of the input. `reduced` is the same mesh with fewer triangles, as points (V, 3) and
+    triangles (T, 3); without it, fast-simplification makes it for large meshes where installed.
+    `progress` is called on the calling thread, at most 20 times a second, with the name of the
+    step and the share of the work that is done. The same input and settings give the same bytes.
+
+    Raises `InputError` when the mesh cannot be done, `Cancelled` when the token was raised.
+    """
+    if reduced is None and is_available():
+        reduced = reduce(positions, loop_start, corner_vert, cancel)
+    return _core.remesh(
+        positions,
+        loop_start,
+        corner_vert,
+        faces=faces,
+        kind=kind,
+        primitive=primitive,
+        predictor=predictor,
+        threads=threads,
+        seed=seed,
+        scale=scale,
+        material_index=material_index,
+        reduced=reduced,
+        progress=progress,
+        cancel=cancel,
+    )
+
+
+def is_available() -> bool:
+    """Whether fast-simplification is installed and a process can be started for it."""
+    found = importlib.util.find_spec("fast_simplification") is not None
+    return found and bool(sys.executable) and "python" in os.path.basename(sys.executable).lower()
+
+
+def reduce(
+    positions: Float,
+    loop_start: Int,
+    corner_vert: Int,
+    cancel: _core.CancelToken | None = None,
+) -> tuple[Float, Int] | None:
+    """A mesh of many triangles with fewer; `None` for anything else, or when it fails.
+
+    Raises `Cancelled` when the token was raised.
+    """
+    if not _is_large_and_of_triangles(positions, loop_start, corner_vert):
+        return None
+    given = io.BytesIO()
+    np.save(given, positions)
+    np.save(given, corner_vert.reshape(-1, 3))
+    answer = _ask(given.getvalue(), cancel or _core.CancelToken())
+    if answer is None:
+        return None
+    return np.load(answer), np.load(answer)
+
+
+def _is_large_and_of_triangles(positions: Float, loop_start: Int, corner_vert: Int) -> bool:
+    arrays = (positions, loop_start, corner_vert)
+    if not all(isinstance(each, np.ndarray) for each in arrays):
+        return False
+    n_faces = len(loop_start)
+    if n_faces <= LARGE or len(corner_vert) != 3 * n_faces or positions.dtype != np.float32:
+        return False
+    regular = bool(np.array_equal(loop_start, np.arange(0, 3 * n_faces, 3, dtype=np.int32)))
+    in_range = corner_vert.min() >= 0 and corner_vert.max() < len(positions)
+    return bool(regular and in_range and np.isfinite(positions).all())
+
+
+def _ask(given: bytes, cancel: _core.CancelToken) -> io.BytesIO | None:
+    child = subprocess.Popen(
+        [sys.executable, "-c", _CHILD, str(REDUCED)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)},
+    )
+    answers: list[bytes] = []
+    asker = threading.Thread(target=lambda: answers.append(child.communicate(given)[0]))
+    asker.start()
+    while asker.is_alive():
+        asker.join(_TICK_S)
+        if cancel.is_cancelled:
+            child.kill()
+    asker.join()
+    if cancel.is_cancelled:
+        raise _core.Cancelled("cancelled")
+    return io.BytesIO(answers[0]) if child.returncode == 0 and answers else None
