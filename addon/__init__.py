@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Orbflow: rebuilds a mesh with good edge flow by deforming a sphere into it.
+
+The extension reads arrays from Blender, asks `orbflow_native`, and writes arrays back; it computes
+nothing itself. `operators/remesh.py` is the button, `job.py` the thread behind it.
+"""
+
+import bpy
+
+from . import panel, settings
+from .operators import remesh
+
+_CLASSES = (
+    settings.OrbflowSettings,
+    remesh.OBJECT_OT_orbflow_remesh,
+    panel.VIEW3D_PT_orbflow,
+)
+
+
+def register() -> None:
+    """Called by Blender when the extension is switched on."""
+    for each in _CLASSES:
+        bpy.utils.register_class(each)
+    bpy.types.Scene.orbflow = bpy.props.PointerProperty(type=settings.OrbflowSettings)
+    bpy.types.VIEW3D_MT_object.append(panel.draw_menu)
+
+
+def unregister() -> None:
+    """Called by Blender when the extension is switched off."""
+    bpy.types.VIEW3D_MT_object.remove(panel.draw_menu)
+    del bpy.types.Scene.orbflow
+    for each in reversed(_CLASSES):
+        bpy.utils.unregister_class(each)

@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The button: Object > Orbflow Remesh."""
+
+import bpy
+import orbflow_native
+
+from .. import mesh_arrays, panel, settings
+from ..job import Done, Failed, Job, Outcome, Task, remesh
+
+_TICK_S = 0.05
+
+# The job of the modal operator, for the progress bar. Blender crashes when the status bar is given
+# a new function on every tick, so that one function is set once and reads this.
+_running: list[Job] = []
+
+
+class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
+    """Rebuild the selected meshes at the number of faces asked for"""  # noqa: D400
+
+    bl_idname = "object.orbflow_remesh"
+    bl_label = "Orbflow Remesh"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Whether there is something to do, and in words why not."""
+        reason = why_not(context)
+        if reason:
+            cls.poll_message_set(reason)
+        return not reason
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """The blocking twin for scripts, background mode and the redo panel."""
+        tasks = _tasks(context)
+        window_manager = context.window_manager
+        window_manager.progress_begin(0.0, 1.0)
+        try:
+            outcomes = remesh(
+                tasks,
+                settings.for_core(self),
+                lambda _, share: window_manager.progress_update(share),
+                orbflow_native.CancelToken(),
+            )
+        finally:
+            window_manager.progress_end()
+        return self._finish(context, outcomes)
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        """Starts the thread and stays modal until it has ended."""
+        if bpy.app.background:
+            return self.execute(context)
+        _running.append(Job(_tasks(context), settings.for_core(self)))
+        self._timer = context.window_manager.event_timer_add(_TICK_S, window=context.window)
+        context.window_manager.modal_handler_add(self)
+        context.workspace.status_text_set(_draw_status)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Watches the thread; lets the user look around meanwhile, but not edit."""
+        job = _running[-1]
+        if event.type == "ESC" and event.value == "PRESS":
+            job.cancel()
+        if event.type == "TIMER":
+            panel.redraw(context)
+            if job.has_ended():
+                return self._end(context, job)
+        return {"PASS_THROUGH"} if _is_navigation(event) else {"RUNNING_MODAL"}
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Blender takes the operator away, for example when another file is opened."""
+        job = _running[-1]
+        job.cancel()
+        job.wait()
+        self._tidy(context)
+
+    def _end(self, context: bpy.types.Context, job: Job) -> set[str]:
+        self._tidy(context)
+        if job.is_cancelled:
+            self.report({"INFO"}, "cancelled; nothing was changed")
+            return {"CANCELLED"}
+        return self._finish(context, job.outcomes)
+
+    def _tidy(self, context: bpy.types.Context) -> None:
+        _running.clear()
+        context.window_manager.event_timer_remove(self._timer)
+        context.workspace.status_text_set(None)
+        panel.redraw(context)
+
+    def _finish(self, context: bpy.types.Context, outcomes: list[Outcome]) -> set[str]:
+        """Writes the results; the one place where errors become reports."""
+        done = [each for each in outcomes if isinstance(each, Done)]
+        failed = [each for each in outcomes if isinstance(each, Failed)]
+        texts = [each.error for each in failed]
+        if len(outcomes) > 1:
+            texts = [f"{each.task.name}: {each.error}" for each in failed]
+        for each in done:
+            _replace(context, each)
+        if not done:
+            self.report({"ERROR"}, "\n".join(texts))
+            return {"CANCELLED"}
+        if texts:
+            self.report({"WARNING"}, "\n".join(texts))
+        self.report({"INFO"}, "\n".join(panel.sentence(each.result.report) for each in done))
+        return {"FINISHED"}
+
+
+def why_not(context: bpy.types.Context) -> str:
+    """Why the button is greyed out; empty when it is not."""
+    if _running:
+        return "Orbflow is at work; press ESC to stop it"
+    if context.mode != "OBJECT":
+        return "Leave edit, sculpt or paint mode first: Orbflow works in object mode"
+    meshes = [each for each in context.selected_objects if each.type == "MESH"]
+    if not meshes:
+        return "Select at least one mesh object"
+    if not any(_is_editable(each) for each in meshes):
+        return "The selected meshes are linked from another file and cannot be changed"
+    return ""
+
+
+def _is_editable(thing: bpy.types.Object) -> bool:
+    return thing.is_editable and thing.data.library is None
+
+
+def _tasks(context: bpy.types.Context) -> list[Task]:
+    context.view_layer.update()
+    return [
+        Task(each.name, mesh_arrays.read(each.data), tuple(each.matrix_world.to_scale()))
+        for each in context.selected_objects
+        if each.type == "MESH" and _is_editable(each)
+    ]
+
+
+def _replace(context: bpy.types.Context, outcome: Done) -> None:
+    thing = context.scene.objects.get(outcome.task.name)
+    if thing is None:
+        return
+    old, name = thing.data, thing.data.name
+    thing.data = mesh_arrays.write(outcome.result, like=old)
+    if old.users == 0:
+        bpy.data.meshes.remove(old)
+        thing.data.name = name
+    panel.remember(thing.name, outcome.result.report)
+
+
+def _is_navigation(event: bpy.types.Event) -> bool:
+    return event.type in {"MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "MOUSEMOVE"} or (
+        event.type.startswith(("NDOF", "NUMPAD", "TRACKPAD"))
+    )
+
+
+def _draw_status(bar: bpy.types.Header, _context: bpy.types.Context) -> None:
+    if not _running:
+        return
+    job = _running[-1]
+    bar.layout.progress(factor=job.share, text=f"Orbflow: {job.step}")
+    bar.layout.label(text="Stop", icon="EVENT_ESC")

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The sidebar panel and the menu entry."""
+
+from typing import Any
+
+import bpy
+
+from . import settings
+
+# The report of each object's last run in this session, by the object's name.
+_reports: dict[str, dict[str, Any]] = {}
+
+
+class VIEW3D_PT_orbflow(bpy.types.Panel):
+    """Settings, the button, and the score of the last run."""
+
+    bl_label = "Orbflow"
+    bl_category = "Orbflow"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        layout = self.layout
+        layout.use_property_split = True
+        for name in settings.NAMES:
+            layout.prop(context.scene.orbflow, name)
+        _button(layout, context)
+        report = context.object and last_report(context.object.name)
+        if report:
+            _draw_score(layout.box().column(align=True), report)
+
+
+def draw_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    """The entry in the Object menu; operators in no menu are not found by searching."""
+    menu.layout.separator()
+    _button(menu.layout, context)
+
+
+def _button(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    button = layout.operator("object.orbflow_remesh", icon="MOD_REMESH")
+    settings.copy(context.scene.orbflow, button)
+
+
+def remember(name: str, report: dict[str, Any]) -> None:
+    """Keeps the report of an object's last run for the panel."""
+    _reports[name] = report
+
+
+def last_report(name: str) -> dict[str, Any] | None:
+    """The report of an object's last run in this session."""
+    return _reports.get(name)
+
+
+def redraw(context: bpy.types.Context) -> None:
+    """Redraws the status bar."""
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "STATUSBAR":
+                area.tag_redraw()
+
+
+def sentence(report: dict[str, Any]) -> str:
+    """A run in one line."""
+    before, after = report["input"]["n_faces"], report["output"]["n_faces"]
+    return f"{before:,} faces became {after:,}"
+
+
+def rows(report: dict[str, Any]) -> list[tuple[str, str]]:
+    """The score as words and values."""
+    score = report["score"]
+    return [
+        ("Faces", f"{report['output']['n_faces']:,}"),
+        ("Quads", f"{score['quads_pct']:.0f} %"),
+        ("Irregular vertices", f"{score['irregular_pct']:.1f} %"),
+        ("Flow deviation", f"{score['alignment_deg']:.1f}°"),
+        ("Edges on loops", f"{score['loop_edges_pct']:.0f} %"),
+        ("Mean distance", f"{score['chamfer_pct']:.3f} %"),
+        ("Edge length variation", f"{score['edge_cv']:.2f}"),
+    ]
+
+
+def _draw_score(column: bpy.types.UILayout, report: dict[str, Any]) -> None:
+    for words, value in rows(report):
+        row = column.row()
+        row.label(text=words)
+        row.label(text=value)

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the user can set; the operator and the panel share one list of properties."""
+
+# pyright: reportInvalidTypeForm=false
+from typing import Any
+
+import bpy
+from bpy.props import EnumProperty, IntProperty
+
+MIN_FACES = 4
+MAX_FACES = 4_000_000
+
+_KINDS = (
+    ("QUADS", "Quads", "Faces with four corners"),
+    ("TRIANGLES", "Triangles", "Faces with three corners"),
+)
+_PRIMITIVES = (
+    ("AUTO", "Automatic", "Quad sphere for quads, adaptive for triangles"),
+    ("QUAD_SPHERE", "Quad Sphere", "A subdivided box: even rows of quads, 8 irregular vertices"),
+    ("ADAPTIVE", "Adaptive", "Triangles placed where the surface needs them"),
+    ("ICOSPHERE", "Icosphere", "A subdivided icosahedron: 12 irregular vertices"),
+)
+_PREDICTORS = (("SOLVER", "Solver", "Finds the map to the sphere by optimisation"),)
+
+
+class Settings:
+    """The properties themselves; names, defaults and ranges are those of the core."""
+
+    faces: IntProperty(
+        name="Faces",
+        description="How many faces the result has, within a few percent",
+        default=2000,
+        min=MIN_FACES,
+        max=MAX_FACES,
+        soft_min=100,
+        soft_max=100_000,
+    )
+    kind: EnumProperty(name="Kind", description="What the faces are", items=_KINDS)
+    primitive: EnumProperty(
+        name="Primitive",
+        description="The sphere that is deformed into the mesh",
+        items=_PRIMITIVES,
+    )
+    predictor: EnumProperty(
+        name="Predictor",
+        description="Who proposes where each vertex lies on the sphere",
+        items=_PREDICTORS,
+    )
+    threads: IntProperty(
+        name="Threads",
+        description="How many threads to use; 0 uses all. The result is the same for any number",
+        default=0,
+        min=0,
+        soft_max=64,
+    )
+    seed: IntProperty(
+        name="Seed",
+        description="Another seed places the points of the adaptive primitive differently",
+        default=0,
+        min=0,
+    )
+
+
+NAMES = tuple(Settings.__annotations__)
+
+
+class OrbflowSettings(bpy.types.PropertyGroup, Settings):
+    """The settings that the panel shows, saved with the scene."""
+
+
+def for_core(source: Settings) -> dict[str, Any]:
+    """The settings as keywords of `orbflow_native.remesh`."""
+    return {name: _value(getattr(source, name)) for name in NAMES}
+
+
+def copy(source: Settings, target: object) -> None:
+    """Gives `target`, an operator's properties, the settings of `source`."""
+    for name in NAMES:
+        setattr(target, name, getattr(source, name))
+
+
+def _value(value: str | int) -> str | int | None:
+    if value == "AUTO":
+        return None
+    return value.lower().replace("_", "-") if isinstance(value, str) else value
