@@ -86,7 +86,7 @@ def _colours(exhibit: Exhibit, points: NDArray[np.float64]) -> NDArray[np.float6
 def _wires(solid: bpy.types.Object, thickness: float) -> None:
     wire = solid.copy()
     wire.data = solid.data.copy()
-    dark = np.tile(np.float32([0.03, 0.03, 0.05, 1.0]), len(wire.data.vertices))
+    dark = np.tile(np.array([0.03, 0.03, 0.05, 1.0], np.float32), len(wire.data.vertices))
     wire.data.color_attributes["colour"].data.foreach_set("color", dark)
     modifier = wire.modifiers.new("wire", "WIREFRAME")
     modifier.thickness, modifier.use_even_offset = thickness, False

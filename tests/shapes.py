@@ -1,0 +1,37 @@
+"""Meshes made of numbers, chosen by property."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Arrays = tuple[NDArray[np.float32], NDArray[np.int32], NDArray[np.int32]]
+
+
+def ball(rows: int = 40, columns: int = 60) -> Arrays:
+    """A closed lumpy ball of 2 × (rows - 1) × columns triangles."""
+    lat = np.linspace(0, np.pi, rows + 1)[1:-1]
+    lon = np.linspace(0, 2 * np.pi, columns, endpoint=False)
+    lat, lon = np.meshgrid(lat, lon, indexing="ij")
+    radius = 1 + 0.2 * np.sin(3 * lat) * np.cos(2 * lon)
+    ring = np.stack([np.sin(lat) * np.cos(lon), np.sin(lat) * np.sin(lon), np.cos(lat)], -1)
+    points = np.concatenate([(radius[..., None] * ring).reshape(-1, 3), [[0, 0, 1], [0, 0, -1]]])
+    return points.astype(np.float32), *faces_of(_ball_triangles(rows, columns))
+
+
+def faces_of(triangles: NDArray[np.int32]) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """Triangles as starts and corners."""
+    starts = np.arange(0, 3 * len(triangles), 3, dtype=np.int32)
+    return starts, np.ascontiguousarray(triangles.ravel(), np.int32)
+
+
+def _ball_triangles(rows: int, columns: int) -> NDArray[np.int32]:
+    here = np.arange(columns)
+    there = (here + 1) % columns
+    top, bottom = (rows - 1) * columns, (rows - 1) * columns + 1
+    last = (rows - 2) * columns
+    triangles = [np.stack([np.full(columns, top), here, there], -1)]
+    for row in range(rows - 2):
+        a, b = row * columns, (row + 1) * columns
+        triangles.append(np.stack([a + here, b + here, b + there], -1))
+        triangles.append(np.stack([a + here, b + there, a + there], -1))
+    triangles.append(np.stack([np.full(columns, bottom), last + there, last + here], -1))
+    return np.concatenate(triangles).astype(np.int32)

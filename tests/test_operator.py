@@ -1,0 +1,276 @@
+"""The operator in the real Blender, on every fixture."""
+
+import importlib
+import time
+from collections.abc import Callable
+from typing import Any
+
+import bpy
+import numpy as np
+import orbflow_native
+import pytest
+from conftest import FIXTURES
+
+Open = Callable[[str], Any]
+press = bpy.ops.object
+
+
+def addon(name: str) -> Any:  # noqa: ANN401 - a module of the installed extension
+    return importlib.import_module(f"bl_ext.user_default.orbflow.{name}")
+
+
+def arrays(thing: Any) -> tuple[bytes, ...]:  # noqa: ANN401
+    read = addon("mesh_arrays").read(thing.data)
+    return read.positions.tobytes(), read.loop_start.tobytes(), read.corner_vert.tobytes()
+
+
+def select(*things: Any) -> None:  # noqa: ANN401
+    bpy.ops.object.select_all(action="DESELECT")
+    for thing in things:
+        thing.select_set(True)
+
+
+def is_sound(thing: Any) -> bool:  # noqa: ANN401
+    """Whether Blender finds nothing to repair in an object's mesh."""
+    return not thing.data.validate()
+
+
+def refused(thing: Any) -> str:  # noqa: ANN401
+    """Presses the button, sees that nothing changed, and returns the text of the error."""
+    before, data, users = arrays(thing), thing.data, thing.data.users
+    with pytest.raises(RuntimeError) as caught:
+        press.orbflow_remesh()
+    assert (arrays(thing), thing.data, thing.data.users) == (before, data, users)
+    return str(caught.value)
+
+
+def test_a_real_mesh_becomes_quads(open_fixture: Open) -> None:
+    spot = open_fixture("01")
+    assert press.orbflow_remesh(faces=2000) == {"FINISHED"}
+    assert abs(len(spot.data.polygons) - 2000) <= 40
+    assert {len(face.vertices) for face in spot.data.polygons} == {4}
+    assert is_sound(spot)
+
+
+def test_scripts_and_background_get_the_bytes_of_the_core(open_fixture: Open) -> None:
+    spot = open_fixture("01")
+    given = addon("mesh_arrays").read(spot.data)
+    wanted = orbflow_native.remesh(
+        given.positions,
+        given.loop_start,
+        given.corner_vert,
+        faces=500,
+        material_index=given.material_index,
+    )
+    press.orbflow_remesh(faces=500)
+    result = addon("mesh_arrays").read(spot.data)
+    assert np.array_equal(result.positions, wanted.positions)
+    assert np.array_equal(result.corner_vert, wanted.corner_vert)
+    assert np.array_equal(result.material_index, wanted.material_index)
+
+
+def test_triangles_come_when_asked_for(open_fixture: Open) -> None:
+    first = open_fixture("03")
+    press.orbflow_remesh(faces=300, kind="TRIANGLES")
+    assert {len(face.vertices) for face in first.data.polygons} == {3}
+
+
+def test_all_selected_objects_are_done_in_one_go(open_fixture: Open) -> None:
+    open_fixture("02")
+    before = {thing.name: arrays(thing) for thing in bpy.data.objects}
+    assert press.orbflow_remesh(faces=200) == {"FINISHED"}
+    for thing in bpy.data.objects:
+        assert arrays(thing) != before[thing.name]
+        assert is_sound(thing)
+
+
+def test_one_bad_object_does_not_stop_the_others(open_fixture: Open) -> None:
+    left = open_fixture("02")
+    bad = left.copy()
+    bad.name, bad.data = "Bad", bpy.data.meshes.new("Bad")
+    bpy.context.scene.collection.objects.link(bad)
+    before = arrays(left)
+    select(left, bad)
+    assert press.orbflow_remesh(faces=200) == {"FINISHED"}
+    assert arrays(left) != before
+    assert len(bad.data.vertices) == 0
+
+
+def test_shared_data_becomes_single_user(open_fixture: Open) -> None:
+    first = open_fixture("03")
+    second = bpy.data.objects["Second"]
+    before = arrays(second)
+    press.orbflow_remesh(faces=200)
+    assert arrays(second) == before
+    assert (first.data.users, second.data.users) == (1, 1)
+    assert first.data != second.data
+
+
+def test_the_object_keeps_what_is_the_artists(open_fixture: Open) -> None:
+    thing = open_fixture("04")
+    kept = thing.name, thing.data.name, thing.parent, thing.matrix_world.copy()
+    modifiers = [(each.name, each.type) for each in thing.modifiers]
+    materials = list(thing.data.materials)
+    press.orbflow_remesh(faces=600)
+    assert (thing.name, thing.data.name, thing.parent, thing.matrix_world) == kept
+    assert [(each.name, each.type) for each in thing.modifiers] == modifiers
+    assert list(thing.data.materials) == materials
+    assert {face.material_index for face in thing.data.polygons} == {0, 1, 2}
+    assert thing.data["made_by"] == "make.py"
+    low, high = (
+        max(face.center[2] for face in thing.data.polygons if face.material_index == i)
+        for i in (0, 2)
+    )
+    assert low < high
+    assert len(bpy.data.meshes) == 1
+
+
+def test_shading_is_kept_flat_or_smooth(open_fixture: Open) -> None:
+    artist = open_fixture("09")
+    press.orbflow_remesh(faces=200)
+    assert not any(face.use_smooth for face in artist.data.polygons)
+    artist.data.shade_smooth()
+    press.orbflow_remesh(faces=200)
+    assert all(face.use_smooth for face in artist.data.polygons)
+
+
+def test_faces_are_even_as_the_object_is_seen(open_fixture: Open) -> None:
+    stretched = open_fixture("08")
+    press.orbflow_remesh(faces=800, kind="TRIANGLES")
+    points = np.array([v.co for v in stretched.data.vertices]) * (1, 1, 4)
+    edges = np.array([edge.vertices for edge in stretched.data.edges])
+    lengths = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
+    assert lengths.std() / lengths.mean() < 0.25
+
+
+def test_closed_parts_of_one_object_are_done_one_by_one(open_fixture: Open) -> None:
+    parts = open_fixture("11")
+    press.orbflow_remesh(faces=500)
+    assert abs(len(parts.data.polygons) - 500) <= 25
+    assert is_sound(parts)
+
+
+def test_quads_polygons_and_turned_faces_are_welcome(open_fixture: Open) -> None:
+    cube = open_fixture("12")
+    assert press.orbflow_remesh(faces=96) == {"FINISHED"}
+    assert is_sound(cube)
+
+
+@pytest.mark.parametrize(
+    ("prefix", "text"),
+    [
+        ("05", "1 border loop, "),
+        ("06", "genus 1"),
+        ("07", "the mesh has no faces (0 vertices)"),
+        ("10", "3 faces meet at the edge between vertices 0 and 1; at most 2 can"),
+    ],
+)
+def test_what_cannot_be_done_is_said_and_left_alone(
+    open_fixture: Open, prefix: str, text: str
+) -> None:
+    thing = open_fixture(prefix)
+    given = addon("mesh_arrays").read(thing.data)
+    with pytest.raises(orbflow_native.InputError) as caught:
+        orbflow_native.remesh(given.positions, given.loop_start, given.corner_vert)
+    told = refused(thing)
+    assert text in told
+    assert str(caught.value) in told
+
+
+def test_coordinates_that_are_not_numbers_are_named(open_fixture: Open) -> None:
+    first = open_fixture("03")
+    first.data.vertices[17].co.y = float("nan")
+    assert "vertex 17 has a coordinate that is not finite" in refused(first)
+
+
+@pytest.mark.parametrize("size", [1e30, 1e-30])
+def test_any_size_is_done(open_fixture: Open, size: float) -> None:
+    first = open_fixture("03")
+    positions = np.array([vertex.co for vertex in first.data.vertices], np.float32) * size
+    first.data.attributes["position"].data.foreach_set("vector", positions.ravel())
+    assert press.orbflow_remesh(faces=200) == {"FINISHED"}
+    assert max(abs(x) for vertex in first.data.vertices for x in vertex.co) > 0.5 * size
+
+
+def test_a_flat_scale_is_said(open_fixture: Open) -> None:
+    first = open_fixture("03")
+    first.scale.x = 0
+    assert "every axis needs a finite scale" in refused(first)
+
+
+def test_the_wrong_mode_greys_the_button_out_and_says_why(open_fixture: Open) -> None:
+    first = open_fixture("03")
+    bpy.ops.object.mode_set(mode="EDIT")
+    try:
+        with pytest.raises(RuntimeError, match="Orbflow works in object mode"):
+            press.orbflow_remesh()
+    finally:
+        bpy.ops.object.mode_set(mode="OBJECT")
+    assert len(first.data.polygons) == 1280
+
+
+def test_no_selected_mesh_greys_the_button_out_and_says_why(open_fixture: Open) -> None:
+    open_fixture("04")
+    select(bpy.data.objects["Parent"])
+    with pytest.raises(RuntimeError, match="Select at least one mesh object"):
+        press.orbflow_remesh()
+
+
+def test_linked_objects_grey_the_button_out_and_say_why(open_fixture: Open) -> None:
+    open_fixture("07")
+    path = str(FIXTURES / "03_shared_data.blend")
+    with bpy.data.libraries.load(path, link=True) as (_, wanted):
+        wanted.objects = ["First"]
+    (linked,) = wanted.objects
+    bpy.context.scene.collection.objects.link(linked)
+    select(linked)
+    with pytest.raises(RuntimeError, match="linked from another file"):
+        press.orbflow_remesh()
+
+
+def test_counts_out_of_range_are_clamped_by_blender(open_fixture: Open) -> None:
+    open_fixture("12")
+    assert press.orbflow_remesh(faces=1) == {"FINISHED"}
+
+
+@pytest.mark.parametrize("after_s", [0.0, 0.05, 0.2])
+def test_the_thread_behind_the_button_stops_within_a_fifth_of_a_second(
+    open_fixture: Open, after_s: float
+) -> None:
+    spot = open_fixture("01")
+    before = arrays(spot)
+    settings = addon("settings").for_core(bpy.context.scene.orbflow) | {"faces": 200_000}
+    task = addon("job").Task(spot.name, addon("mesh_arrays").read(spot.data), (1.0, 1.0, 1.0))
+    job = addon("job").Job([task] * 3, settings)
+    time.sleep(after_s)
+    start = time.monotonic()
+    job.cancel()
+    job.wait()
+    assert time.monotonic() - start < 0.2
+    assert job.is_cancelled
+    assert job.has_ended()
+    assert arrays(spot) == before
+
+
+def test_the_thread_behind_the_button_does_the_same_as_the_blocking_twin(
+    open_fixture: Open,
+) -> None:
+    first = open_fixture("03")
+    task = addon("job").Task(first.name, addon("mesh_arrays").read(first.data), (1.0, 1.0, 1.0))
+    settings = addon("settings").for_core(bpy.context.scene.orbflow)
+    job = addon("job").Job([task], settings)
+    job.wait()
+    (outcome,) = job.outcomes
+    press.orbflow_remesh()
+    result = addon("mesh_arrays").read(first.data)
+    assert np.array_equal(outcome.result.positions, result.positions)
+    assert job.share == 1.0
+
+
+def test_the_extension_can_be_switched_off_and_on(open_fixture: Open) -> None:
+    open_fixture("03")
+    name = "bl_ext.user_default.orbflow"
+    bpy.ops.preferences.addon_disable(module=name)
+    assert not hasattr(bpy.types, "OBJECT_OT_orbflow_remesh")
+    bpy.ops.preferences.addon_enable(module=name)
+    assert hasattr(bpy.types, "OBJECT_OT_orbflow_remesh")
