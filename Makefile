@@ -1,14 +1,14 @@
 # Orbflow: `make` prints what there is. Everything sets itself up from Rust and Python alone.
 
 PYTHON_VERSION ?= $(firstword $(foreach v,3.13 3.11,$(if $(shell scripts/find_python.sh $(v)),$(v))))
-PYTHON = $(shell scripts/find_python.sh $(PYTHON_VERSION))
 VENV = .venv-$(PYTHON_VERSION)
 BIN = $(VENV)/bin
 # On Linux the wheel is linked against an old C library, so that it runs wherever Blender runs.
 WHEEL_FLAGS ?= $(if $(filter Linux,$(shell uname)),--zig --compatibility manylinux_2_28)
 SOURCES := $(shell find Cargo.toml Cargo.lock native/*/Cargo.toml native/*/src native/python -type f 2>/dev/null)
-ADDON := $(shell find addon -type f ! -name "*.pyc" 2>/dev/null)
+ADDON := $(shell find addon -type f ! -name "*.pyc")
 
+.SECONDARY: # keep the stamps
 .PHONY: help demo test test-rust test-python wheel zip fixtures pictures bench lint format ci clean
 
 help: ## Prints this list
@@ -22,14 +22,14 @@ test: test-rust test-python ## Runs every test
 test-rust: ## Runs the tests of the Rust crates
 	cargo test --workspace --locked --quiet
 
-test-python: $(VENV)/wheel.stamp ## Runs the tests over Blender, the wheel and the zip
+test-python: dist/zip.stamp $(VENV)/wheel.stamp ## Runs the tests over Blender, the wheel and the zip
 	$(BIN)/python -m pytest
 
 wheel: dist/wheel.stamp ## Builds the Python wheel in dist/
 zip: dist/zip.stamp ## Builds this platform's Blender extension, dist/orbflow-*.zip
 
-fixtures: $(VENV)/venv.stamp ## Builds every .blend of blend_fixtures/ anew
-	$(BIN)/python blend_fixtures/make.py
+fixtures: .venv-3.11/venv.stamp ## Builds every .blend of blend_fixtures/ anew, so that Blender 4.5 reads them
+	.venv-3.11/bin/python blend_fixtures/make.py
 
 pictures: $(VENV)/bench.stamp ## Makes every picture of docs/pictures/ anew
 	cargo build --release --locked -p orbflow-cli
@@ -65,24 +65,24 @@ ci: ## Runs what continuous integration runs: lint and test on Python 3.11 and 3
 clean: ## Removes what was built, but not the virtual environments
 	rm -rf dist demo target
 
-$(VENV)/venv.stamp: pyproject.toml
-	@test -n "$(PYTHON)" || { echo "Python 3.11 or 3.13 with venv is needed"; exit 1; }
-	scripts/install_libraries.sh
-	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet pip==26.3
-	$(BIN)/python -m pip install --quiet --group test
+.venv-%/venv.stamp: pyproject.toml
+	@python="$$(scripts/find_python.sh $*)"; test -n "$$python" || \
+		{ echo "Python 3.11 or 3.13 with venv and pip is needed"; exit 1; }; \
+		scripts/install_libraries.sh && "$$python" -m venv .venv-$*
+	.venv-$*/bin/python -m pip install --quiet pip==26.3
+	.venv-$*/bin/python -m pip install --quiet --group test
 	@touch $@
 
-$(VENV)/lint.stamp: $(VENV)/wheel.stamp
-	$(BIN)/python -m pip install --quiet --group lint
+.venv-%/wheel.stamp: .venv-%/venv.stamp dist/wheel.stamp
+	.venv-$*/bin/python -m pip install --quiet --force-reinstall --no-deps dist/wheels/*.whl
 	@touch $@
 
-$(VENV)/bench.stamp: $(VENV)/venv.stamp
-	$(BIN)/python -m pip install --quiet --group bench
+.venv-%/lint.stamp: .venv-%/wheel.stamp
+	.venv-$*/bin/python -m pip install --quiet --group lint
 	@touch $@
 
-$(VENV)/wheel.stamp: $(VENV)/venv.stamp dist/wheel.stamp
-	$(BIN)/python -m pip install --quiet --force-reinstall --no-deps dist/wheels/*.whl
+.venv-%/bench.stamp: .venv-%/venv.stamp
+	.venv-$*/bin/python -m pip install --quiet --group bench
 	@touch $@
 
 dist/wheel.stamp: $(SOURCES) | $(VENV)/venv.stamp
@@ -91,6 +91,6 @@ dist/wheel.stamp: $(SOURCES) | $(VENV)/venv.stamp
 		--manifest-path native/python/Cargo.toml --out dist/wheels $(WHEEL_FLAGS)
 	@touch $@
 
-dist/zip.stamp: dist/wheel.stamp $(ADDON) scripts/build_zip.py
+dist/zip.stamp: dist/wheel.stamp $(ADDON) LICENSE-GPL scripts/build_zip.py | $(VENV)/venv.stamp
 	$(BIN)/python scripts/build_zip.py dist/wheels dist
 	@touch $@
