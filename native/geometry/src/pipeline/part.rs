@@ -130,20 +130,26 @@ impl PartJob<'_> {
         map: &SphereMap,
         progress: &Progress<'_>,
     ) -> Result<(PolygonMesh, Option<sphere::Report>), Error> {
-        let settings = sphere::Settings {
-            n_faces: self.n_faces,
-            seed: self.settings.seed,
-            ..sphere::Settings::default()
-        };
+        let seed = self.settings.seed;
         let fixed = match self.settings.primitive() {
             Primitive::Adaptive => {
+                let n_faces = self.n_faces;
+                let settings = sphere::Settings {
+                    n_faces,
+                    seed,
+                    ..sphere::Settings::default()
+                };
                 let adaptive = sphere::adaptive(map, &settings, progress)?;
                 return Ok((adaptive.primitive, Some(adaptive.report)));
             }
             Primitive::QuadSphere => sphere::quad_sphere(sphere::quad_sphere_counts(self.n_faces)),
             Primitive::Icosphere => sphere::icosphere(sphere::icosphere_frequency(self.n_faces)),
         };
-        Ok((fixed, None))
+        let settings = sphere::SpreadSettings {
+            seed,
+            ..sphere::SpreadSettings::default()
+        };
+        Ok((sphere::spread(map, &fixed, &settings, progress)?, None))
     }
 }
 
