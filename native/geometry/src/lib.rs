@@ -11,6 +11,7 @@ pub mod nearest;
 pub mod pipeline;
 pub mod progress;
 pub mod random;
+pub mod score;
 pub mod sparse;
 pub mod sphere;
 pub mod sphere_map;

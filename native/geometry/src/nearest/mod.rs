@@ -20,7 +20,7 @@ pub use triangle::closest_on_triangle;
 /// A tree of boxes over triangles, to find the closest of them.
 ///
 /// Degenerate triangles are allowed: a point or a segment is a triangle too. Coordinates must be
-/// finite; between 1e-150 and 1e150 their squares neither vanish nor overflow.
+/// finite; between 1e-70 and 1e70 the fourth powers of lengths, squared areas, neither vanish nor overflow.
 #[derive(Clone, Debug)]
 pub struct Bvh {
     nodes: Vec<Node>,
@@ -99,6 +99,12 @@ impl Bvh {
     /// Builds the tree over the faces of a mesh.
     pub fn of_mesh(mesh: &TriangleMesh) -> Self {
         let triangles: Vec<_> = mesh.face_ids().map(|face| mesh.triangle(face)).collect();
+        Self::new(&triangles)
+    }
+
+    /// Builds the tree over points, as triangles without size: face i is the i-th point.
+    pub fn of_points(points: &[DVec3]) -> Self {
+        let triangles: Vec<_> = points.iter().map(|&p| [p; 3]).collect();
         Self::new(&triangles)
     }
 

@@ -1,0 +1,122 @@
+//! Sharp lines of the input and of the output, compared.
+
+use glam::DVec3;
+
+use super::statistics::{harmonic, share};
+use super::surface::Surface;
+use crate::measure::{Groups, angle_between};
+use crate::mesh::{FaceId, Id};
+use crate::nearest::Bvh;
+
+/// What is sharp on the input, in degrees between normals.
+const SHARP_INPUT: f64 = 40.0;
+/// What is sharp on the output; less, because larger faces cut corners.
+const SHARP_OUTPUT: f64 = 30.0;
+/// Shorter lines are noise, in diagonals.
+const SHORTEST_LINE: f64 = 0.1;
+/// With shorter lines in all, or with a smaller share of all sharp edges on lines, the input has
+/// no clear ones: noise and folds of skin make short, scattered lines.
+const LEAST_TOTAL: f64 = 2.0;
+const LEAST_SHARE: f64 = 0.75;
+/// How far apart a found line may be, in diagonals.
+const TOLERANCE: f64 = 0.005;
+/// Between two samples of a line, in diagonals.
+const SPACING: f64 = 0.001;
+
+/// F1 of sharp lines; none where the input has no clear ones.
+pub fn f1_pct(input: &Surface, output: &Surface) -> Option<f64> {
+    let diagonal = input.diagonal();
+    let wanted = SharpLines::find(input, SHARP_INPUT, SHORTEST_LINE * diagonal);
+    let is_clear = wanted.length >= LEAST_TOTAL * diagonal
+        && wanted.length >= LEAST_SHARE * wanted.length_of_all.max(1e-300);
+    if !is_clear {
+        return None;
+    }
+    let found = SharpLines::find(output, SHARP_OUTPUT, 0.0);
+    let [wanted, found] = [&wanted, &found].map(|lines| lines.samples(SPACING * diagonal));
+    if found.is_empty() {
+        return Some(0.0);
+    }
+    let tolerance = TOLERANCE * diagonal;
+    let precision = share_near(&found, &wanted, tolerance);
+    let recall = share_near(&wanted, &found, tolerance);
+    Some(100.0 * harmonic(precision, recall))
+}
+
+/// The share of points that have another point within the tolerance.
+fn share_near(points: &[DVec3], others: &[DVec3], tolerance: f64) -> f64 {
+    let tree = Bvh::of_points(others);
+    let limit = tolerance * tolerance;
+    share(points, |&p| {
+        tree.closest_where(p, limit, |_| true).is_some()
+    })
+}
+
+struct SharpLines {
+    segments: Vec<[DVec3; 2]>,
+    length: f64,
+    /// The length of all sharp edges, on lines or not.
+    length_of_all: f64,
+}
+
+impl SharpLines {
+    /// Edges with a larger angle between their faces, in connected lines no shorter than asked.
+    fn find(surface: &Surface, degrees: f64, shortest: f64) -> Self {
+        let edges = sharp_edges(surface, degrees);
+        let mut groups = Groups::new(surface.mesh.n_vertices());
+        for &edge in &edges {
+            let [a, b] = surface.edges.ends[edge];
+            groups.link(a.index(), b.index());
+        }
+        let (line, n) = groups.numbered();
+        let line_of = |edge: usize| line[surface.edges.ends[edge][0].index()] as usize;
+        let mut totals = vec![0.0; n];
+        for &edge in &edges {
+            totals[line_of(edge)] += surface.edge_lengths[edge];
+        }
+        let length_of = |edges: &[usize]| edges.iter().map(|&e| surface.edge_lengths[e]).sum();
+        let length_of_all = length_of(&edges);
+        let kept: Vec<usize> = edges
+            .into_iter()
+            .filter(|&edge| totals[line_of(edge)] >= shortest)
+            .collect();
+        let segment = |&e: &usize| surface.edges.ends[e].map(|v| surface.mesh.position(v));
+        let segments = kept.iter().map(segment).collect();
+        Self {
+            segments,
+            length: length_of(&kept),
+            length_of_all,
+        }
+    }
+
+    fn samples(&self, spacing: f64) -> Vec<DVec3> {
+        let along = |&[a, b]: &[DVec3; 2]| {
+            let n = (a.distance(b) / spacing).ceil() as usize;
+            (0..n).map(move |i| a.lerp(b, (i as f64 + 0.5) / n as f64))
+        };
+        self.segments.iter().flat_map(along).collect()
+    }
+}
+
+/// Edges of two faces whose normals differ by more, in order.
+fn sharp_edges(surface: &Surface, degrees: f64) -> Vec<usize> {
+    let edges = &surface.edges;
+    let mut is_sharp = vec![false; edges.len()];
+    for corner in 0..edges.n_corners() {
+        if let Some(twin) = edges.twin(corner).filter(|&twin| twin > corner) {
+            let [a, b] = [corner, twin].map(|c| newell_normal(surface, FaceId(edges.face_of[c])));
+            let angle = angle_between(a, b).to_degrees();
+            is_sharp[edges.of_corner[corner] as usize] = angle > degrees;
+        }
+    }
+    (0..edges.len()).filter(|&edge| is_sharp[edge]).collect()
+}
+
+/// The unit normal of a polygon that need not be flat.
+fn newell_normal(surface: &Surface, face: FaceId) -> DVec3 {
+    let corners = surface.mesh.face(face);
+    let first = surface.mesh.position(corners[0]);
+    let at = |i: usize| surface.mesh.position(corners[i]) - first;
+    let sum: DVec3 = (1..corners.len() - 1).map(|i| at(i).cross(at(i + 1))).sum();
+    sum.normalize_or_zero()
+}
