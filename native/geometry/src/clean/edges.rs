@@ -1,18 +1,16 @@
-//! Which triangles share which edges, while triangles are being dropped.
+//! Which triangles share which edges, however many.
 
 use crate::mesh::{FaceId, HalfedgeId, Id, VertexId};
 
-/// The halfedges of each edge, however many there are. Halfedge `3 f + i` leaves corner `i` of
-/// triangle `f`, as in a mesh.
+/// The halfedges of each edge. Halfedge `3 f + i` leaves corner `i` of triangle `f`, as in a mesh.
 pub(super) struct Edges {
     /// The edge of each halfedge.
     edge: Vec<u32>,
     /// Where the halfedges of each edge start in `halfedges`.
     starts: Vec<u32>,
     halfedges: Vec<HalfedgeId>,
-    /// How many triangles of each edge are kept.
-    n_kept: Vec<u32>,
-    is_kept: Vec<bool>,
+    /// How many triangles of each edge have not been dropped.
+    n_faces: Vec<u32>,
 }
 
 impl Edges {
@@ -36,88 +34,81 @@ impl Edges {
         starts.push(entries.len() as u32);
         Self {
             edge,
-            n_kept: starts.windows(2).map(|w| w[1] - w[0]).collect(),
+            n_faces: starts.windows(2).map(|w| w[1] - w[0]).collect(),
             starts,
             halfedges: entries.into_iter().map(|(_, h)| HalfedgeId(h)).collect(),
-            is_kept: vec![true; faces.len()],
         }
     }
 
-    /// All halfedges that ever were at each edge, edge after edge.
+    /// The halfedges of each edge, edge after edge.
     pub(super) fn runs(&self) -> impl Iterator<Item = &[HalfedgeId]> {
         let run = |w: &[u32]| &self.halfedges[w[0] as usize..w[1] as usize];
         self.starts.windows(2).map(run)
     }
 
-    /// The halfedges of kept triangles at the edge of a halfedge.
-    pub(super) fn around(&self, h: HalfedgeId) -> impl Iterator<Item = HalfedgeId> {
-        let edge = self.edge[h.index()] as usize;
-        let [from, to] = [self.starts[edge], self.starts[edge + 1]];
-        let run = &self.halfedges[from as usize..to as usize];
-        run.iter().copied().filter(|h| self.is_kept(h.face()))
-    }
-
-    /// The one other halfedge at the edge of a halfedge, if there is one.
-    pub(super) fn twin(&self, h: HalfedgeId) -> Option<HalfedgeId> {
-        self.around(h).find(|&other| other != h)
-    }
-
-    /// How many kept triangles meet at the edge of a halfedge.
-    pub(super) fn n_faces(&self, h: HalfedgeId) -> usize {
-        self.n_kept[self.edge[h.index()] as usize] as usize
-    }
-
-    /// A halfedge of the first edge with more than two kept triangles.
-    pub(super) fn crowded(&self) -> Option<HalfedgeId> {
-        let edge = self.n_kept.iter().position(|&n| n > 2)?;
-        Some(self.halfedges[self.starts[edge] as usize])
-    }
-
     /// The triangles that have an edge for themselves.
-    pub(super) fn lonely_faces(&self) -> impl Iterator<Item = FaceId> {
-        let faces = (0..self.is_kept.len()).map(FaceId::from_index);
-        faces.filter(|&face| halfedges(face).any(|h| self.n_faces(h) == 1))
+    pub(super) fn lonely_faces(&self) -> Vec<FaceId> {
+        let mut lonely: Vec<FaceId> = self
+            .runs()
+            .filter(|run| run.len() == 1)
+            .map(|run| run[0].face())
+            .collect();
+        lonely.sort_unstable();
+        lonely.dedup();
+        lonely
     }
 
-    pub(super) fn is_kept(&self, face: FaceId) -> bool {
-        self.is_kept[face.index()]
-    }
-
-    /// Drops a triangle and returns those that have an edge for themselves now.
+    /// Drops a triangle and returns all that were at its edges that have one triangle left.
     pub(super) fn drop_face(&mut self, face: FaceId) -> Vec<FaceId> {
-        self.is_kept[face.index()] = false;
         let mut lonely = Vec::new();
         for h in halfedges(face) {
             let edge = self.edge[h.index()] as usize;
-            self.n_kept[edge] -= 1;
-            if self.n_kept[edge] == 1 {
-                lonely.extend(self.around(h).map(HalfedgeId::face));
+            self.n_faces[edge] -= 1;
+            if self.n_faces[edge] == 1 {
+                let [from, to] = [self.starts[edge], self.starts[edge + 1]];
+                let run = &self.halfedges[from as usize..to as usize];
+                lonely.extend(run.iter().map(|h| h.face()));
             }
         }
         lonely
     }
 
-    /// Tells that the corners of a triangle were turned from `a b c` to `a c b`.
-    pub(super) fn turn_face(&mut self, face: FaceId) {
-        // Corner 0 keeps its vertex: the sides a→b and c→a change places, b→c stays.
-        let [first, last] = [face.index() * 3, face.index() * 3 + 2];
-        for (h, new) in [(first, last), (last, first)] {
-            let edge = self.edge[h] as usize;
-            let [from, to] = [self.starts[edge], self.starts[edge + 1]];
-            let run = &mut self.halfedges[from as usize..to as usize];
-            let old = HalfedgeId::from_index(h);
-            // A triangle with two different corners at each edge is at the edge once.
-            if let Some(entry) = run.iter_mut().find(|entry| **entry == old) {
-                *entry = HalfedgeId::from_index(new);
+    /// The other halfedge at the edge of each halfedge, where edges have at most two.
+    pub(super) fn into_twins(self) -> Twins {
+        let mut twins = vec![NONE; self.halfedges.len()];
+        for run in self.runs() {
+            if let [g, h] = *run {
+                twins[g.index()] = h.0;
+                twins[h.index()] = g.0;
             }
         }
-        self.edge.swap(first, last);
+        Twins(twins)
+    }
+}
+
+const NONE: u32 = u32::MAX;
+
+/// The other halfedge at the edge of each halfedge.
+pub(super) struct Twins(Vec<u32>);
+
+impl Twins {
+    /// The other halfedge at the same edge, if there is one.
+    pub(super) fn of(&self, h: HalfedgeId) -> Option<HalfedgeId> {
+        Some(self.0[h.index()])
+            .filter(|&t| t != NONE)
+            .map(HalfedgeId)
     }
 
-    /// The values of the kept triangles.
-    pub(super) fn kept<T: Copy>(&self, values: &[T]) -> Vec<T> {
-        let pairs = values.iter().zip(&self.is_kept);
-        pairs.filter(|(_, kept)| **kept).map(|(v, _)| *v).collect()
+    /// Tells that the corners of a triangle were turned from `a b c` to `a c b`: the sides a→b and
+    /// c→a change places.
+    pub(super) fn turn_face(&mut self, face: FaceId) {
+        let [first, last] = [face.index() * 3, face.index() * 3 + 2];
+        self.0.swap(first, last);
+        for h in [first, last] {
+            if let Some(twin) = self.of(HalfedgeId::from_index(h)) {
+                self.0[twin.index()] = h as u32;
+            }
+        }
     }
 }
 

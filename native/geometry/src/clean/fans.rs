@@ -2,24 +2,26 @@
 
 use glam::DVec3;
 
-use super::edges::{Edges, halfedges};
+use super::edges::{Twins, halfedges};
 use crate::mesh::{FaceId, HalfedgeId, Id, VertexId};
 
 /// Gives each fan at a vertex but the first a vertex of its own at the same point, after all
-/// others. Faces agree and have at most one neighbour at each edge.
-pub(super) fn split(faces: &mut [[VertexId; 3]], edges: &Edges, positions: &mut Vec<DVec3>) {
+/// others, and returns how many. Faces agree and have at most one neighbour at each edge.
+pub(super) fn split(
+    faces: &mut [[VertexId; 3]],
+    twins: &Twins,
+    positions: &mut Vec<DVec3>,
+) -> usize {
+    let n_before = positions.len();
     let mut has_fan = vec![false; positions.len()];
     let mut seen = vec![false; 3 * faces.len()];
     let mut fan = Vec::new();
     for face in (0..faces.len()).map(FaceId::from_index) {
-        if !edges.is_kept(face) {
-            continue;
-        }
         for corner in halfedges(face) {
             if seen[corner.index()] {
                 continue;
             }
-            collect_fan(corner, edges, &mut fan);
+            collect_fan(corner, twins, &mut fan);
             for h in &fan {
                 seen[h.index()] = true;
             }
@@ -33,14 +35,15 @@ pub(super) fn split(faces: &mut [[VertexId; 3]], edges: &Edges, positions: &mut 
             }
         }
     }
+    positions.len() - n_before
 }
 
 /// The halfedges that leave a vertex between the borders on both sides of one of them.
-fn collect_fan(start: HalfedgeId, edges: &Edges, fan: &mut Vec<HalfedgeId>) {
+fn collect_fan(start: HalfedgeId, twins: &Twins, fan: &mut Vec<HalfedgeId>) {
     fan.clear();
     fan.push(start);
     let mut at = start;
-    while let Some(turned) = edges.twin(at.prev()) {
+    while let Some(turned) = twins.of(at.prev()) {
         if turned == start {
             return;
         }
@@ -48,7 +51,7 @@ fn collect_fan(start: HalfedgeId, edges: &Edges, fan: &mut Vec<HalfedgeId>) {
         at = turned;
     }
     at = start;
-    while let Some(twin) = edges.twin(at) {
+    while let Some(twin) = twins.of(at) {
         at = twin.next();
         fan.push(at);
     }

@@ -14,6 +14,7 @@
 mod ears;
 mod edges;
 mod fans;
+mod mend;
 mod orient;
 mod polygons;
 mod report;
@@ -26,9 +27,8 @@ use thiserror::Error;
 
 use crate::mesh::{FaceId, FaceMap, Id, PolygonMesh, TriangleMesh, TriangleMeshError, VertexId};
 use crate::progress::{Cancelled, Progress};
-use edges::Edges;
+use polygons::Polygons;
 pub use report::Report;
-use scale::Scale;
 use triangulate::Triangulated;
 use weld::Reach;
 
@@ -119,52 +119,43 @@ pub fn clean(input: &PolygonMesh, progress: &Progress) -> Result<Cleaned, Error>
 fn attempt(input: &PolygonMesh, reach: Reach, progress: &Progress) -> Result<Cleaned, Error> {
     let mut report = Report::default();
     let first = weld::first_equal(input, reach);
-    progress.at(0.15)?;
+    progress.at(0.2)?;
     let polygons = polygons::simplify(input, &first, &mut report);
-    progress.at(0.25)?;
-    let mut triangulated = Triangulated::new(input, &polygons);
     progress.at(0.4)?;
-    let mut edges = Edges::new(&triangulated.faces);
-    while triangulated.resolve_conflicts(&edges, &polygons) {
-        edges = Edges::new(&triangulated.faces);
-        progress.check()?;
-    }
+    let triangulated = Triangulated::new(input, &polygons);
     progress.at(0.6)?;
-    let mut faces = triangulated.faces;
-    check_area(&faces, &triangulated.positions, input)?;
-    report.n_flat_dropped = drop_flat_fins(&faces, &triangulated.positions, &mut edges);
-    check_edges(&edges, &faces, &triangulated.origins)?;
+    check_area(&triangulated, input)?;
+    count_vertices(&first, &polygons, &mut report);
+    if let Some(cleaned) = already_solid(&triangulated, report) {
+        return Ok(cleaned);
+    }
     progress.at(0.7)?;
-    report.n_reoriented =
-        orient::agree(&mut faces, &mut edges).map_err(|[a, b]| Error::NotOrientable { a, b })?;
-    progress.at(0.75)?;
-    let n_before = triangulated.positions.len();
-    fans::split(&mut faces, &edges, &mut triangulated.positions);
-    report.n_split = triangulated.positions.len() - n_before;
-    progress.at(0.8)?;
-    let source = edges.kept(&triangulated.source);
-    let faces = edges.kept(&faces);
-    let (positions, faces) = compact(&triangulated.positions, faces);
-    count_vertices(input, &first, &polygons, &mut report);
-    let mesh = TriangleMesh::new(positions, faces)?;
-    progress.at(1.0)?;
-    let source = FaceMap::from_vec(source);
+    let mended = mend::mend(polygons, triangulated, &mut report, progress)?;
+    let (positions, faces) = compact(&mended.positions, mended.faces);
     Ok(Cleaned {
-        mesh,
-        source,
+        mesh: TriangleMesh::new(positions, faces)?,
+        source: FaceMap::from_vec(mended.source),
         report,
     })
 }
 
+/// The mesh if it has nothing to mend and no border, which is told fastest by trying.
+fn already_solid(triangulated: &Triangulated, report: Report) -> Option<Cleaned> {
+    let (positions, faces) = compact(&triangulated.positions, triangulated.faces.clone());
+    let mesh = TriangleMesh::new(positions, faces).ok()?;
+    let source = FaceMap::from_vec(triangulated.source.clone());
+    let cleaned = Cleaned {
+        mesh,
+        source,
+        report,
+    };
+    Some(cleaned).filter(|cleaned| cleaned.mesh.is_closed())
+}
+
 /// Refuses meshes whose faces are all points or lines, and those of fewer than four points.
-fn check_area(
-    faces: &[[VertexId; 3]],
-    positions: &[DVec3],
-    input: &PolygonMesh,
-) -> Result<(), Error> {
-    let scale = Scale::of(positions);
-    let solid = |f: &[VertexId; 3]| !scale.is_flat(f.map(|v| positions[v.index()]));
-    if !faces.iter().any(solid) {
+fn check_area(triangulated: &Triangulated, input: &PolygonMesh) -> Result<(), Error> {
+    let faces = &triangulated.faces;
+    if faces.iter().all(|&face| triangulated.is_flat(face)) {
         let n_faces = input.n_faces();
         return Err(Error::NoArea { n_faces });
     }
@@ -176,40 +167,6 @@ fn check_area(
         return Err(Error::TooFewPoints { n_points });
     }
     Ok(())
-}
-
-/// Drops triangles without area that hang on the surface: those with an edge that no other face
-/// has, again and again. A triangle without area whose edges all have two faces closes a crack.
-fn drop_flat_fins(faces: &[[VertexId; 3]], positions: &[DVec3], edges: &mut Edges) -> usize {
-    let scale = Scale::of(positions);
-    let is_flat = |f: FaceId| scale.is_flat(faces[f.index()].map(|v| positions[v.index()]));
-    let mut stack: Vec<FaceId> = edges.lonely_faces().filter(|&f| is_flat(f)).collect();
-    let mut n_dropped = 0;
-    while let Some(face) = stack.pop() {
-        if !edges.is_kept(face) {
-            continue;
-        }
-        n_dropped += 1;
-        for lonely in edges.drop_face(face) {
-            if is_flat(lonely) {
-                stack.push(lonely);
-            }
-        }
-    }
-    n_dropped
-}
-
-fn check_edges(edges: &Edges, faces: &[[VertexId; 3]], origins: &[VertexId]) -> Result<(), Error> {
-    let Some(h) = edges.crowded() else {
-        return Ok(());
-    };
-    let face = faces[h.face().index()];
-    let [a, b] = [face[h.corner()], face[h.next().corner()]].map(|v| origins[v.index()]);
-    Err(Error::NonManifoldEdge {
-        n_faces: edges.n_faces(h),
-        a: a.min(b),
-        b: a.max(b),
-    })
 }
 
 /// Drops vertices that no face uses.
@@ -233,13 +190,8 @@ fn compact(positions: &[DVec3], mut faces: Vec<[VertexId; 3]>) -> (Vec<DVec3>, V
 }
 
 /// Counts the vertices welded, and those that no face of the input used.
-fn count_vertices(
-    input: &PolygonMesh,
-    first: &[VertexId],
-    polygons: &polygons::Polygons,
-    report: &mut Report,
-) {
-    let mut used = vec![false; input.n_vertices()];
+fn count_vertices(first: &[VertexId], polygons: &Polygons, report: &mut Report) {
+    let mut used = vec![false; first.len()];
     for vertex in polygons.corners() {
         used[vertex.index()] = true;
     }

@@ -1,6 +1,6 @@
 //! Turns faces so that neighbours agree.
 
-use super::edges::{Edges, halfedges};
+use super::edges::{Twins, halfedges};
 use crate::mesh::{FaceId, HalfedgeId, Id, VertexId};
 
 /// Turns faces so that both faces of every edge run through it in opposite directions; in each
@@ -8,19 +8,19 @@ use crate::mesh::{FaceId, HalfedgeId, Id, VertexId};
 /// edge where it cannot be done.
 pub(super) fn agree(
     faces: &mut [[VertexId; 3]],
-    edges: &mut Edges,
+    twins: &mut Twins,
 ) -> Result<usize, [VertexId; 2]> {
     let mut turned: Vec<Option<bool>> = vec![None; faces.len()];
     let mut component = Vec::new();
     let mut n_turned = 0;
     for seed in (0..faces.len()).map(FaceId::from_index) {
-        if turned[seed.index()].is_some() || !edges.is_kept(seed) {
+        if turned[seed.index()].is_some() {
             continue;
         }
         component.clear();
         component.push(seed);
         turned[seed.index()] = Some(false);
-        spread(faces, edges, &mut component, &mut turned)?;
+        spread(faces, twins, &mut component, &mut turned)?;
         let is_turned = |f: &FaceId| turned[f.index()] == Some(true);
         let n = component.iter().filter(|f| is_turned(f)).count();
         let smaller = 2 * n <= component.len();
@@ -28,7 +28,7 @@ pub(super) fn agree(
         n_turned += component.len();
         for &face in &component {
             faces[face.index()].swap(1, 2);
-            edges.turn_face(face);
+            twins.turn_face(face);
         }
     }
     Ok(n_turned)
@@ -38,7 +38,7 @@ pub(super) fn agree(
 /// to turn it.
 fn spread(
     faces: &[[VertexId; 3]],
-    edges: &Edges,
+    twins: &Twins,
     component: &mut Vec<FaceId>,
     turned: &mut [Option<bool>],
 ) -> Result<(), [VertexId; 2]> {
@@ -47,7 +47,7 @@ fn spread(
     while let Some(&face) = component.get(i) {
         i += 1;
         for h in halfedges(face) {
-            let Some(twin) = edges.twin(h) else {
+            let Some(twin) = twins.of(h) else {
                 continue;
             };
             let disagrees = origin(h) == origin(twin);

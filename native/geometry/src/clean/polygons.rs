@@ -29,6 +29,19 @@ impl Polygons {
         self.source[i]
     }
 
+    /// Drops polygons that came before with the same corners in the same direction; how many?
+    pub(super) fn drop_repeated(&mut self) -> usize {
+        let repeated = repeated(self);
+        if !repeated.is_empty() {
+            let mut kept = Self::default();
+            for i in (0..self.len()).filter(|i| repeated.binary_search(i).is_err()) {
+                kept.push(self.polygon(i), self.source(i));
+            }
+            *self = kept;
+        }
+        repeated.len()
+    }
+
     fn push(&mut self, polygon: &[VertexId], source: FaceId) {
         self.corners.extend_from_slice(polygon);
         self.ends.push(self.corners.len() as u32);
@@ -36,7 +49,7 @@ impl Polygons {
     }
 }
 
-/// Drops corners that repeat, polygons of fewer than three corners, and repeated polygons.
+/// Drops corners that repeat, and polygons of which fewer than three corners are left.
 pub(super) fn simplify(input: &PolygonMesh, first: &[VertexId], report: &mut Report) -> Polygons {
     let mut polygons = Polygons::default();
     let mut corners = Vec::new();
@@ -50,16 +63,7 @@ pub(super) fn simplify(input: &PolygonMesh, first: &[VertexId], report: &mut Rep
             polygons.push(&corners, face);
         }
     }
-    let repeated = repeated(&polygons);
-    report.n_duplicates = repeated.len();
-    if repeated.is_empty() {
-        return polygons;
-    }
-    let mut kept = Polygons::default();
-    for i in (0..polygons.len()).filter(|i| repeated.binary_search(i).is_err()) {
-        kept.push(polygons.polygon(i), polygons.source(i));
-    }
-    kept
+    polygons
 }
 
 /// Takes out a corner that equals the one before it, and one whose two neighbours are equal: both

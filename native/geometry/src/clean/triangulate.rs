@@ -56,7 +56,8 @@ impl Triangulated {
         triangulated
     }
 
-    fn cut_all(&mut self, polygons: &Polygons) {
+    /// Cuts all polygons, which need not be those from before.
+    pub(super) fn cut_all(&mut self, polygons: &Polygons) {
         self.positions.truncate(self.n_input);
         self.origins.truncate(self.n_input);
         self.faces.clear();
@@ -68,6 +69,27 @@ impl Triangulated {
             self.source.resize(self.faces.len(), polygons.source(i));
             self.polygon.resize(self.faces.len(), i as u32);
         }
+    }
+
+    /// Whether a triangle has no area, as far as rounding lets one see.
+    pub(super) fn is_flat(&self, face: [VertexId; 3]) -> bool {
+        let corners = face.map(|v| self.positions[v.index()]);
+        self.scale.is_flat(corners)
+    }
+
+    pub(super) fn is_face_flat(&self, face: FaceId) -> bool {
+        self.is_flat(self.faces[face.index()])
+    }
+
+    /// Keeps some of the triangles only.
+    pub(super) fn keep(&mut self, is_kept: &[bool]) {
+        let flags = || is_kept.iter().copied();
+        let mut kept = flags();
+        self.faces.retain(|_| kept.next() == Some(true));
+        let mut kept = flags();
+        self.source.retain(|_| kept.next() == Some(true));
+        let mut kept = flags();
+        self.polygon.retain(|_| kept.next() == Some(true));
     }
 
     fn cut(&mut self, polygon: &[VertexId], way: Way) {
