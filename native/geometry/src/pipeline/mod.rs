@@ -30,6 +30,7 @@ use crate::embed::OffsetPredictor;
 use crate::mesh::PolygonMesh;
 use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
+use crate::score::{self, Score};
 use crate::{measure, transfer};
 use clock::Clock;
 use frame::Prepared;
@@ -135,6 +136,14 @@ fn run(
     let mesh = joined
         .mesh
         .with_positions(prepared.frame.leave(joined.mesh.positions()));
+    let stage = progress.part("score", 0.92, 1.0);
+    let (score, score_refused) = match settings.score() {
+        Some(wanted) => {
+            let scored = clock.step("score", || score::score(input.mesh, &mesh, &wanted, &stage));
+            told(scored)?
+        }
+        None => (None, None),
+    };
     let report = Report {
         version: VERSION,
         settings: settings.clone(),
@@ -143,6 +152,8 @@ fn run(
         output: measure::topology(&mesh),
         embedding: joined.embedding,
         parts: joined.parts,
+        score,
+        score_refused,
         steps: clock.into_steps(),
         peak_memory_mb: peak_memory_mb(),
     };
@@ -153,6 +164,15 @@ fn run(
         sphere: joined.sphere,
         report,
     })
+}
+
+/// A result that cannot be scored is a result all the same; only a cancellation ends the run.
+fn told(scored: Result<Score, score::Error>) -> Result<(Option<Score>, Option<String>), Cancelled> {
+    match scored {
+        Ok(score) => Ok((Some(score), None)),
+        Err(score::Error::Cancelled(cancelled)) => Err(cancelled),
+        Err(error) => Ok((None, Some(error.to_string()))),
+    }
 }
 
 fn transfer_materials(

@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::clock::Step;
 use super::settings::Settings;
 use crate::measure::Topology;
+use crate::score::Score;
 use crate::{clean, decimate, deform, embed, sphere};
 
 /// What is told of a run; the program writes it as JSON.
@@ -24,6 +25,10 @@ pub struct Report {
     pub embedding: embed::Report,
     /// Each part, in the order of its first face.
     pub parts: Vec<PartReport>,
+    /// How good the result is; none when it was not asked for or could not be measured.
+    pub score: Option<Score>,
+    /// Why it could not be measured.
+    pub score_refused: Option<String>,
     /// How long each step took.
     pub steps: Vec<Step>,
     /// The most memory that the process held, in MiB; none where the system does not tell.

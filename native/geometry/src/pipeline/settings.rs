@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Error;
+use crate::score;
 
 /// The fewest faces that can be asked for: those of a tetrahedron.
 pub const MIN_FACES: usize = 4;
@@ -84,6 +85,9 @@ pub struct Settings {
     pub seed: u64,
     /// How many threads to use; 0 uses every core. The result does not depend on it.
     pub threads: usize,
+    /// How the result is scored; none saves the time. A score without a target takes the number
+    /// of faces that was asked for.
+    pub score: Option<score::Settings>,
 }
 
 impl Default for Settings {
@@ -94,6 +98,7 @@ impl Default for Settings {
             primitive: None,
             seed: 0,
             threads: 0,
+            score: None,
         }
     }
 }
@@ -104,6 +109,18 @@ impl Settings {
         self.primitive.unwrap_or(match self.kind {
             Kind::Triangles => Primitive::Adaptive,
             Kind::Quads => Primitive::QuadSphere,
+        })
+    }
+
+    /// How the result is scored, with the target in quads: two triangles count as one.
+    pub(super) fn score(&self) -> Option<score::Settings> {
+        let target = match self.kind {
+            Kind::Triangles => self.faces.div_ceil(2),
+            Kind::Quads => self.faces,
+        };
+        self.score.map(|wanted| score::Settings {
+            target: wanted.target.or(Some(target)),
+            ..wanted
         })
     }
 
