@@ -50,7 +50,6 @@ pub mod pipeline;
 pub mod progress;
 pub mod random;
 pub mod score;
-pub mod score;
 pub mod sparse;
 pub mod sphere;
 pub mod sphere_map;

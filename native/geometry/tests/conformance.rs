@@ -96,7 +96,8 @@ impl OffsetPredictor for Miscounted {
 }
 
 fn hierarchies() -> Vec<(&'static str, CollapseHierarchy)> {
-    let collapse = |mesh| collapse_to_tetrahedron(mesh, &Progress::none()).unwrap();
+    let collapse =
+        |mesh| collapse_to_tetrahedron(mesh, &Progress::none()).expect("closed, genus 0");
     let shapes = common::closed(7).into_iter();
     shapes.map(|(name, mesh)| (name, collapse(mesh))).collect()
 }
@@ -104,8 +105,8 @@ fn hierarchies() -> Vec<(&'static str, CollapseHierarchy)> {
 /// What every predictor must lead to.
 fn check(hierarchy: &CollapseHierarchy, predictor: &dyn OffsetPredictor) -> Report {
     let settings = Settings::default();
-    let Embedded { map, report } =
-        embed(hierarchy, predictor, &settings, &Progress::none()).unwrap();
+    let Embedded { map, report } = embed(hierarchy, predictor, &settings, &Progress::none())
+        .expect("every proposal ends in a map");
     let faces = hierarchy.mesh().faces();
     assert!(folded_faces(faces, map.sphere()).is_empty());
     assert_eq!(degree(faces, map.sphere()), 1);

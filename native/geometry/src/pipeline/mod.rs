@@ -34,6 +34,7 @@ use crate::score::{self, Score};
 use crate::{measure, transfer};
 use clock::Clock;
 use frame::Prepared;
+use join::Joined;
 use part::PartJob;
 
 /// The version of Orbflow.
@@ -103,29 +104,13 @@ fn run(
     let mut clock = Clock::default();
     let stage = progress.part("clean", 0.0, 0.02);
     let prepared = clock.step("clean", || Prepared::new(input.mesh, &stage))?;
-    let parts = clock.step("split", || split::split(&prepared.mesh))?;
-    let shares = split::share(&parts, settings.faces, settings.kind.fewest_faces());
-    let reduced = input.reduced.filter(|_| parts.len() == 1);
-    let reduced = reduced.map(|r| r.with_positions(prepared.frame.enter(r.positions())));
-
-    let total = prepared.mesh.n_faces();
-    let mut done = 0;
-    let mut results = Vec::with_capacity(parts.len());
-    for (part, n_faces) in parts.iter().zip(shares) {
-        let from = share_of_work(done, total);
-        done += part.n_faces();
-        let progress = progress.part("", from, share_of_work(done, total));
-        let job = PartJob {
-            part,
-            n_faces,
-            settings,
-            predictor,
-            reduced: reduced.as_ref(),
-        };
-        results.push(job.run(&mut clock, &progress)?);
-    }
-    let joined = join::join(results);
-
+    let joined = run_parts(
+        &prepared,
+        input.reduced,
+        settings,
+        (predictor, progress),
+        &mut clock,
+    )?;
     let stage = progress.part("transfer", 0.9, 0.92);
     let materials = input.materials.map(|of_faces| {
         clock.step("transfer", || {
@@ -164,6 +149,37 @@ fn run(
         sphere: joined.sphere,
         report,
     })
+}
+
+/// Does every part by itself and joins them.
+fn run_parts(
+    prepared: &Prepared,
+    reduced: Option<&PolygonMesh>,
+    settings: &Settings,
+    (predictor, progress): (&dyn OffsetPredictor, &Progress<'_>),
+    clock: &mut Clock,
+) -> Result<Joined, Error> {
+    let parts = clock.step("split", || split::split(&prepared.mesh))?;
+    let shares = split::share(&parts, settings.faces, settings.kind.fewest_faces());
+    let reduced = reduced.filter(|_| parts.len() == 1);
+    let reduced = reduced.map(|r| r.with_positions(prepared.frame.enter(r.positions())));
+    let total = prepared.mesh.n_faces();
+    let mut done = 0;
+    let mut results = Vec::with_capacity(parts.len());
+    for (part, n_faces) in parts.iter().zip(shares) {
+        let from = share_of_work(done, total);
+        done += part.n_faces();
+        let progress = progress.part("", from, share_of_work(done, total));
+        let job = PartJob {
+            part,
+            n_faces,
+            settings,
+            predictor,
+            reduced: reduced.as_ref(),
+        };
+        results.push(job.run(clock, &progress)?);
+    }
+    Ok(join::join(results))
 }
 
 /// A result that cannot be scored is a result all the same; only a cancellation ends the run.
