@@ -197,3 +197,10 @@ def test_large_meshes_are_reduced_by_fast_simplification() -> None:
     pytest.importorskip("fast_simplification")
     result = orbflow_native.remesh(*ball(300, 350), faces=300)
     assert result.report["parts"][0]["reduced"]["status"] in {"used", "refused"}
+
+
+def test_a_mesh_scores_itself_as_equal(mesh: Arrays) -> None:
+    score = orbflow_native.score(mesh, mesh, n_samples=2000)
+    assert score["chamfer_pct"] < 1e-6
+    assert score["same_topology"]
+    assert score["f1_at_0.5_pct"] == 100

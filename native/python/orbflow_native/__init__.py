@@ -18,6 +18,7 @@ from ._core import (
     __version__,
     decimate,
     embed,
+    score,
 )
 from .bulk import remesh
 
@@ -36,4 +37,5 @@ __all__ = [
     "decimate",
     "embed",
     "remesh",
+    "score",
 ]

@@ -154,3 +154,15 @@ def decimate(
     cancel: CancelToken | None = None,
 ) -> Decimated:
     """Lowers the number of triangles of a mesh; borders and handles are kept."""
+
+def score(
+    input: tuple[Float, Int, Int],
+    output: tuple[Float, Int, Int],
+    *,
+    target: int | None = None,
+    n_samples: int = 100_000,
+    seed: int = 0,
+    progress: Listener | None = None,
+    cancel: CancelToken | None = None,
+) -> dict[str, Any]:
+    """Says in numbers how good `output` is as a new mesh of `input`."""

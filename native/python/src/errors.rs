@@ -1,6 +1,6 @@
 //! The one place that turns errors of the core into Python exceptions.
 
-use orbflow_geometry::pipeline;
+use orbflow_geometry::{pipeline, score};
 use pyo3::create_exception;
 use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
@@ -33,6 +33,12 @@ pub trait VerbError: std::error::Error + Send {
 impl VerbError for pipeline::Error {
     fn is_cancelled(&self) -> bool {
         self.is_cancelled()
+    }
+}
+
+impl VerbError for score::Error {
+    fn is_cancelled(&self) -> bool {
+        matches!(self, Self::Cancelled(_))
     }
 }
 

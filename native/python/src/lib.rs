@@ -11,6 +11,7 @@ mod errors;
 mod job;
 mod remesh;
 mod report;
+mod score;
 
 /// The compiled half of the package `orbflow_native`.
 #[pyo3::pymodule]
@@ -28,6 +29,8 @@ mod _core {
     use crate::job::CancelToken;
     #[pymodule_export]
     use crate::remesh::{Remeshed, remesh};
+    #[pymodule_export]
+    use crate::score::score;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
