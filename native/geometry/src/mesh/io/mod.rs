@@ -167,6 +167,16 @@ impl Format {
         }
     }
 
+    /// The name, as users write it and as file names end.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Obj => "obj",
+            Self::Ply => "ply",
+            Self::Stl => "stl",
+            Self::Off => "off",
+        }
+    }
+
     /// Guesses the format from the bytes; what looks like nothing else is OBJ, which has no header.
     pub fn sniff(bytes: &[u8]) -> Self {
         let start = bytes.strip_prefix(text::BYTE_ORDER_MARK).unwrap_or(bytes);
@@ -184,12 +194,7 @@ impl Format {
 
 impl fmt::Display for Format {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Obj => "obj",
-            Self::Ply => "ply",
-            Self::Stl => "stl",
-            Self::Off => "off",
-        })
+        f.write_str(self.name())
     }
 }
 

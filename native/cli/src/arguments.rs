@@ -1,0 +1,296 @@
+//! What can be asked for on the command line.
+
+use clap::builder::{PossibleValuesParser, TypedValueParser, ValueParser};
+use clap::error::ErrorKind;
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use orbflow_geometry::embed::{OffsetPredictor, Solver};
+use orbflow_geometry::mesh::io::Format;
+use orbflow_geometry::pipeline::{Kind, MAX_FACES, MIN_FACES, Primitive, Settings};
+use orbflow_geometry::score;
+
+use crate::place::Place;
+
+const AFTER_HELP: &str = "\
+Meshes are read as OBJ, PLY, STL or OFF and written as OBJ, PLY or OFF, by the ending of the file
+name. '-' is standard input or output; standard input is recognised by its first bytes unless
+--input-format is given, standard output is OBJ unless --output-format is given. Files are
+written whole or not at all.
+
+Exit codes: 0 done, 2 wrong usage, 3 this input cannot be done, 130 cancelled by Ctrl-C.";
+
+/// Rebuild meshes with a chosen face count and good edge flow, by deforming a sphere.
+#[derive(Parser, Debug)]
+#[command(name = "orbflow", version, after_help = AFTER_HELP)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// One verb of the core.
+#[derive(Subcommand, Debug)]
+pub enum Command {
+    /// Rebuild a mesh with a chosen number of faces
+    #[command(after_help = AFTER_HELP)]
+    Remesh(Remesh),
+    /// Map every vertex of a mesh to the unit sphere
+    #[command(after_help = AFTER_HELP)]
+    Embed(Embed),
+    /// Lower the number of triangles of a mesh and keep the rest of its vertices in place
+    #[command(after_help = AFTER_HELP)]
+    Decimate(Decimate),
+    /// Measure the edge flow of a mesh and its distance to another
+    #[command(after_help = AFTER_HELP)]
+    Score(Score),
+}
+
+#[derive(Args, Debug)]
+pub struct Remesh {
+    #[command(flatten)]
+    pub files: InAndOut,
+    /// How many faces to make
+    #[arg(long, value_name = "N", default_value_t = Settings::default().faces, value_parser = n_faces())]
+    pub faces: usize,
+    /// The polygons to make [default: quads, or what the primitive has]
+    #[arg(long, value_parser = kind())]
+    pub kind: Option<Kind>,
+    /// The sphere to deform [default: adaptive for triangles, quad-sphere for quads]
+    #[arg(long, value_parser = primitive())]
+    pub primitive: Option<Primitive>,
+    #[command(flatten)]
+    pub run: Run,
+    /// Write what is told of the run, as JSON
+    #[arg(long, value_name = "R.json")]
+    pub report: Option<Place>,
+    /// Write the sphere that was deformed, vertex by vertex the same mesh as OUT
+    #[arg(long, value_name = "SPHERE_OUT")]
+    pub sphere: Option<Place>,
+}
+
+#[derive(Args, Debug)]
+pub struct Embed {
+    #[command(flatten)]
+    pub input: In,
+    /// Write what is told of the run, as JSON
+    #[arg(long, value_name = "R.json")]
+    pub report: Place,
+    #[command(flatten)]
+    pub run: Run,
+    /// Write the triangles of IN with their vertices on the unit sphere
+    #[arg(long, value_name = "OUT")]
+    pub sphere: Option<Place>,
+    /// The format of the sphere, whatever the name ends in
+    #[arg(long, value_name = "FORMAT", value_parser = format(WRITTEN))]
+    pub output_format: Option<Format>,
+}
+
+#[derive(Args, Debug)]
+pub struct Decimate {
+    #[command(flatten)]
+    pub files: InAndOut,
+    /// How many triangles to leave
+    #[arg(long, value_name = "N", value_parser = n_faces())]
+    pub faces: usize,
+}
+
+#[derive(Args, Debug)]
+pub struct Score {
+    /// The mesh that was to be rebuilt
+    #[arg(value_name = "IN")]
+    pub input: Place,
+    /// The mesh to measure
+    #[arg(value_name = "OUT")]
+    pub output: Place,
+    /// The format of both, whatever the names end in
+    #[arg(long, value_name = "FORMAT", value_parser = format(READ))]
+    pub input_format: Option<Format>,
+    /// Write the figures as JSON instead of printing them
+    #[arg(long, value_name = "R.json")]
+    pub report: Option<Place>,
+}
+
+/// The mesh that comes in.
+#[derive(Args, Debug)]
+pub struct In {
+    /// The mesh to read
+    #[arg(value_name = "IN")]
+    pub input: Place,
+    /// The format of IN, whatever its name ends in
+    #[arg(long, value_name = "FORMAT", value_parser = format(READ))]
+    pub input_format: Option<Format>,
+}
+
+/// The mesh that comes in and the one that goes out.
+#[derive(Args, Debug)]
+pub struct InAndOut {
+    #[command(flatten)]
+    pub input: In,
+    /// The mesh to write
+    #[arg(value_name = "OUT")]
+    pub output: Place,
+    /// The format of what is written, whatever the name ends in
+    #[arg(long, value_name = "FORMAT", value_parser = format(WRITTEN))]
+    pub output_format: Option<Format>,
+}
+
+/// How the embedding is run.
+#[derive(Args, Debug)]
+pub struct Run {
+    /// What proposes the map to the sphere
+    #[arg(long, value_enum, default_value_t = Predictor::Solver)]
+    pub predictor: Predictor,
+    /// How many threads to use, 0 for all; the result is the same
+    #[arg(long, value_name = "T", default_value_t = 0)]
+    pub threads: usize,
+    /// Where random choices start; equal seeds give equal bytes
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    pub seed: u64,
+}
+
+/// The predictors by name.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
+pub enum Predictor {
+    /// Progressive embedding; needs no training
+    Solver,
+}
+
+impl Predictor {
+    /// The predictor itself.
+    pub fn build(self) -> Box<dyn OffsetPredictor> {
+        match self {
+            Self::Solver => Box::new(Solver::default()),
+        }
+    }
+}
+
+const READ: &[Format] = &[Format::Obj, Format::Ply, Format::Stl, Format::Off];
+const WRITTEN: &[Format] = &[Format::Obj, Format::Ply, Format::Off];
+
+/// The format that a mesh is written in.
+pub fn output_format(place: &Place, wanted: Option<Format>) -> Option<Format> {
+    let written = |format: &Format| WRITTEN.contains(format);
+    match place.path() {
+        _ if wanted.is_some() => wanted,
+        Some(path) => Format::from_path(path).filter(written),
+        None => Some(Format::Obj),
+    }
+}
+
+impl Remesh {
+    /// What the core is asked for.
+    pub fn settings(&self) -> Settings {
+        Settings {
+            faces: self.faces,
+            kind: self.kind(),
+            primitive: self.primitive,
+            seed: self.run.seed,
+            threads: self.run.threads,
+            score: self.report.as_ref().map(|_| score::Settings::default()),
+        }
+    }
+
+    fn kind(&self) -> Kind {
+        let of_primitive = self.primitive.map(Primitive::kind);
+        self.kind.or(of_primitive).unwrap_or_default()
+    }
+}
+
+impl Arguments {
+    /// Checks what the parser cannot: arguments that do not go together.
+    pub fn check(&self) -> Result<(), clap::Error> {
+        let (meshes, reports, wanted) = match &self.command {
+            Command::Remesh(a) => {
+                check_primitive(a)?;
+                let meshes = [Some(&a.files.output), a.sphere.as_ref()];
+                (meshes, a.report.as_ref(), a.files.output_format)
+            }
+            Command::Embed(a) => ([a.sphere.as_ref(), None], Some(&a.report), a.output_format),
+            Command::Decimate(a) => {
+                let meshes = [Some(&a.files.output), None];
+                (meshes, None, a.files.output_format)
+            }
+            Command::Score(a) => {
+                check_different(
+                    "read",
+                    [&a.input, &a.output]
+                        .into_iter()
+                        .filter(|p| **p == Place::Standard),
+                )?;
+                ([None, None], a.report.as_ref(), None)
+            }
+        };
+        for mesh in meshes.into_iter().flatten() {
+            if output_format(mesh, wanted).is_none() {
+                return Err(wrong(format!(
+                    "cannot tell the format of {mesh}: its name must end in .obj, .ply or .off, or \
+                     --output-format be given"
+                )));
+            }
+        }
+        check_different("written", meshes.into_iter().flatten().chain(reports))
+    }
+}
+
+fn check_primitive(remesh: &Remesh) -> Result<(), clap::Error> {
+    match remesh.primitive {
+        Some(primitive) if primitive.kind() != remesh.kind() => Err(wrong(format!(
+            "the primitive {} has {}, but --kind asks for {}",
+            primitive.name(),
+            primitive.kind().name(),
+            remesh.kind().name()
+        ))),
+        _ => Ok(()),
+    }
+}
+
+fn check_different<'a>(
+    verb: &str,
+    places: impl Iterator<Item = &'a Place>,
+) -> Result<(), clap::Error> {
+    let mut seen: Vec<&Place> = Vec::new();
+    for place in places {
+        if seen.contains(&place) {
+            return Err(wrong(format!("{place} would be {verb} twice")));
+        }
+        seen.push(place);
+    }
+    Ok(())
+}
+
+fn wrong(message: String) -> clap::Error {
+    Arguments::command().error(ErrorKind::ArgumentConflict, message)
+}
+
+fn n_faces() -> ValueParser {
+    let range = MIN_FACES as u64..=MAX_FACES as u64;
+    let parser = clap::value_parser!(u64).range(range);
+    ValueParser::new(parser.map(|n| n as usize))
+}
+
+/// A parser of the names of some values.
+fn named<T>(values: &'static [T], name: fn(T) -> &'static str) -> ValueParser
+where
+    T: Copy + Send + Sync + 'static,
+{
+    let parser = PossibleValuesParser::new(values.iter().map(|&value| name(value)));
+    ValueParser::new(parser.try_map(move |given| {
+        let value = values.iter().find(|value| name(**value) == given);
+        value.copied().ok_or("no such value")
+    }))
+}
+
+fn format(values: &'static [Format]) -> ValueParser {
+    named(values, Format::name)
+}
+
+fn kind() -> ValueParser {
+    named(&[Kind::Triangles, Kind::Quads], Kind::name)
+}
+
+fn primitive() -> ValueParser {
+    const ALL: &[Primitive] = &[
+        Primitive::Adaptive,
+        Primitive::QuadSphere,
+        Primitive::Icosphere,
+    ];
+    named(ALL, Primitive::name)
+}

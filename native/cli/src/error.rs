@@ -1,0 +1,64 @@
+//! Why the program ends without doing what was asked.
+
+use std::io;
+use std::process::ExitCode;
+
+use orbflow_geometry::mesh::io::{ReadError, WriteError};
+use orbflow_geometry::progress::Cancelled;
+use orbflow_geometry::{pipeline, score};
+use thiserror::Error;
+
+use crate::interrupt::CANCELLED;
+use crate::place::Place;
+
+/// Why the program ends without doing what was asked; nothing was written.
+#[derive(Debug, Error)]
+pub enum Error {
+    /// The input cannot be opened or its bytes not fetched.
+    #[error("cannot read {place}: {cause}")]
+    Open { place: Place, cause: io::Error },
+    /// The input's bytes are no mesh.
+    #[error("{place}: {cause}")]
+    Read { place: Place, cause: ReadError },
+    /// The output cannot be made.
+    #[error("cannot write {place}: {cause}")]
+    Write { place: Place, cause: WriteError },
+    /// The mesh cannot be done.
+    #[error("{place}: {cause}")]
+    Pipeline {
+        place: Place,
+        cause: pipeline::Error,
+    },
+    /// The meshes cannot be compared.
+    #[error("cannot score: {0}")]
+    Score(score::Error),
+    /// The report cannot be put in words.
+    #[error("cannot write the report: {0}")]
+    Report(#[from] serde_json::Error),
+    /// The signal handler cannot be set.
+    #[error("cannot watch for ctrl-c: {0}")]
+    Signal(#[from] ctrlc::Error),
+    /// The user asked to stop.
+    #[error("cancelled, nothing was written")]
+    Cancelled(#[from] Cancelled),
+}
+
+impl Error {
+    /// The code that the program ends with.
+    pub fn exit_code(&self) -> ExitCode {
+        ExitCode::from(if matches!(self, Self::Cancelled(_)) {
+            CANCELLED
+        } else {
+            3
+        })
+    }
+
+    /// An error of the pipeline on the mesh from `place`.
+    pub fn pipeline(place: &Place, cause: pipeline::Error) -> Self {
+        if cause.is_cancelled() {
+            return Self::Cancelled(Cancelled);
+        }
+        let place = place.clone();
+        Self::Pipeline { place, cause }
+    }
+}

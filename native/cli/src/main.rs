@@ -1,0 +1,33 @@
+//! The program `orbflow`: the core's verbs on mesh files.
+//!
+//! Exit codes: 0 done, 2 wrong usage, 3 this input cannot be done, 130 stopped by Ctrl-C. Files
+//! are written whole or not at all, all of a run's files together, after all work is done.
+
+mod arguments;
+mod bar;
+mod commands;
+mod error;
+mod inputs;
+mod interrupt;
+mod outputs;
+mod place;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use arguments::Arguments;
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    if let Err(wrong_usage) = arguments.check() {
+        wrong_usage.exit();
+    }
+    match commands::run(&arguments.command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("orbflow: {error}");
+            error.exit_code()
+        }
+    }
+}
