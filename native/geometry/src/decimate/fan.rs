@@ -78,8 +78,8 @@ impl Level {
         let quadric = self.quadrics[vertex].at(goal) + self.quadrics[into].at(goal);
         let l2 = self.points[vertex].distance_squared(goal);
         // The length keeps flat parts evenly spaced; the last term orders what has no area at all.
-        let distance = quadric + 1e-4 * l2 * l2 + 1e-8 * l2;
-        distance * (1.0 + 0.1 * valence.saturating_sub(6) as f64)
+        let distance = quadric + 1e-3 * l2 * l2 + 1e-8 * l2;
+        distance * (1.0 + 0.3 * valence.saturating_sub(6) as f64)
     }
 }
 
