@@ -97,7 +97,7 @@ impl OffsetPredictor for Miscounted {
 
 fn hierarchies() -> Vec<(&'static str, CollapseHierarchy)> {
     let collapse =
-        |mesh| collapse_to_tetrahedron(mesh, &Progress::none()).expect("closed, genus 0");
+        |mesh| collapse_to_tetrahedron(mesh, &Progress::none()).expect("the shapes are closed");
     let shapes = common::closed(7).into_iter();
     shapes.map(|(name, mesh)| (name, collapse(mesh))).collect()
 }
@@ -106,7 +106,7 @@ fn hierarchies() -> Vec<(&'static str, CollapseHierarchy)> {
 fn check(hierarchy: &CollapseHierarchy, predictor: &dyn OffsetPredictor) -> Report {
     let settings = Settings::default();
     let Embedded { map, report } = embed(hierarchy, predictor, &settings, &Progress::none())
-        .expect("every proposal ends in a map");
+        .expect("every proposal is repaired");
     let faces = hierarchy.mesh().faces();
     assert!(folded_faces(faces, map.sphere()).is_empty());
     assert_eq!(degree(faces, map.sphere()), 1);

@@ -3,12 +3,16 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
+use rayon::prelude::*;
 
-use crate::mesh::{TriangleMesh, VertexMap};
+use crate::mesh::{TriangleMesh, VertexId, VertexMap};
 use crate::sphere_map::triple_product;
 
 /// The smallest area ratio that the energy tells apart; folds count as this.
 const LEAST_RATIO: f64 = 1e-3;
+
+/// How many faces are summed up at once.
+const CHUNK: usize = 512;
 
 /// The distortion of a map: the area-weighted mean of log(1 + g (1 + 1/d²)) over all triangles.
 ///
@@ -18,26 +22,43 @@ const LEAST_RATIO: f64 = 1e-3;
 pub fn distortion(mesh: &TriangleMesh, sphere: &VertexMap<DVec3>) -> f64 {
     let size = mesh.positions().iter().map(|p| p.abs().max_element());
     let size = size.fold(f64::MIN_POSITIVE, f64::max);
-    let corners = |f: crate::mesh::FaceId| mesh.triangle(f).map(|p| p / size);
-    let double_area = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).length();
-    let total: f64 = mesh.face_ids().map(|f| double_area(corners(f))).sum();
+    let corners = |f: [VertexId; 3]| f.map(|v| mesh.position(v) / size);
+    let total = sum_over_faces(mesh, |f| double_area(corners(f)));
     let scale = 8.0 * PI / total;
-    let mut sum = 0.0;
-    for face in mesh.face_ids() {
-        let [a, b, c] = corners(face);
-        let [p, q, r] = mesh.face(face).map(|v| sphere[v]);
-        let unscaled = double_area([a, b, c]);
-        let dot = |u: DVec3, v: DVec3, w: DVec3| (v - u).dot(w - u);
-        let dirichlet = dot(a, b, c) * q.distance_squared(r)
-            + dot(b, c, a) * r.distance_squared(p)
-            + dot(c, a, b) * p.distance_squared(q);
-        let density = dirichlet / unscaled / (unscaled * scale);
-        let ratio = (triple_product(p, q, r) / (unscaled * scale)).max(LEAST_RATIO);
-        // No map has g < 2 d; a triangle shrunk to a point has after the ratio was bounded.
-        let log = (density.max(2.0 * ratio) * (1.0 + ratio.powi(-2))).ln_1p();
+    let weighted_log = |f: [VertexId; 3]| {
+        let surface = corners(f);
+        let log = log_distortion(surface, f.map(|v| sphere[v]), scale);
         if log.is_finite() {
-            sum += unscaled * log;
+            double_area(surface) * log
+        } else {
+            0.0
         }
-    }
-    sum / total
+    };
+    sum_over_faces(mesh, weighted_log) / total
+}
+
+/// log(1 + g (1 + 1/d²)) of one triangle, areas on the surface scaled; not finite without area.
+fn log_distortion([a, b, c]: [DVec3; 3], [p, q, r]: [DVec3; 3], scale: f64) -> f64 {
+    let unscaled = double_area([a, b, c]);
+    let dot = |u: DVec3, v: DVec3, w: DVec3| (v - u).dot(w - u);
+    let dirichlet = dot(a, b, c) * q.distance_squared(r)
+        + dot(b, c, a) * r.distance_squared(p)
+        + dot(c, a, b) * p.distance_squared(q);
+    let density = dirichlet / unscaled / (unscaled * scale);
+    let ratio = (triple_product(p, q, r) / (unscaled * scale)).max(LEAST_RATIO);
+    // No map has g < 2 d; a triangle shrunk to a point has after the ratio was bounded.
+    (density.max(2.0 * ratio) * (1.0 + ratio.powi(-2))).ln_1p()
+}
+
+fn double_area([a, b, c]: [DVec3; 3]) -> f64 {
+    (b - a).cross(c - a).length()
+}
+
+/// A sum that is the same for any number of threads: over chunks, then over their sums.
+fn sum_over_faces(mesh: &TriangleMesh, value: impl Fn([VertexId; 3]) -> f64 + Sync) -> f64 {
+    let chunks = mesh.faces().par_chunks(CHUNK);
+    let sums: Vec<f64> = chunks
+        .map(|faces| faces.iter().map(|&f| value(f)).sum())
+        .collect();
+    sums.iter().sum()
 }

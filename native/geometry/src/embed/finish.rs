@@ -39,9 +39,7 @@ pub fn finish(
         let sweep = level.sweep(STILL, progress)?;
         n_relaxations += sweep.n_relaxations;
         n_sweeps += 1;
-        // The first sweep sees every fan, and so every face three times.
-        let energy = *whole.get_or_insert(sweep.energy / 3.0);
-        complete = sweep.decrease <= settings.tolerance * energy;
+        complete = sweep.is_settled(&mut whole, settings.tolerance);
     }
     level.store(&mut partial);
     Ok(Finish {

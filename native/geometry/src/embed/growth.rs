@@ -19,10 +19,22 @@ const N_SETTLING: usize = 3;
 pub const STILL: f64 = 1e-3;
 /// How often the surroundings are relaxed, more evenly each time, before a vertex has no room.
 const MAX_RESCUES: i32 = 6;
-/// Sweeps of each such attempt.
-const N_RESCUE_SWEEPS: u32 = 10;
-/// A round with fewer insertions than this is computed by one thread.
-const LEAST_PARALLEL: usize = 256;
+/// Each such attempt.
+const RESCUE: Limits = Limits {
+    max_sweeps: 10,
+    tolerance: 0.0,
+};
+/// How many places a thread finds at least: waking it takes as long as some of them.
+const LEAST_CHUNK: usize = 16;
+
+/// How long a level is relaxed.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Limits {
+    /// Sweeps over all vertices, at most.
+    pub max_sweeps: u32,
+    /// They end when one lowers the energy by less than this share.
+    pub tolerance: f64,
+}
 
 /// A mesh that grows on the sphere.
 #[derive(Clone, Debug)]
@@ -81,11 +93,8 @@ impl Growth {
         progress: &Progress,
     ) -> Result<(), GrowError> {
         let place = |&collapse: &Collapse<'_>| self.place(collapse);
-        let places: Vec<Option<DVec3>> = if collapses.len() < LEAST_PARALLEL {
-            collapses.iter().map(place).collect()
-        } else {
-            collapses.par_iter().map(place).collect()
-        };
+        let chunks = collapses.par_iter().with_min_len(LEAST_CHUNK);
+        let places: Vec<Option<DVec3>> = chunks.map(place).collect();
         let mut crowded = Vec::new();
         for (&collapse, place) in collapses.iter().zip(places) {
             match place {
@@ -145,7 +154,7 @@ impl Growth {
                 delta: usual.delta + 0.05 * 4.0_f64.powi(attempt),
                 ..usual
             };
-            self.relax(N_RESCUE_SWEEPS, even, progress)?;
+            self.relax(RESCUE, even, progress)?;
             if let Some(position) = self.place(collapse) {
                 self.insert(collapse, position);
                 self.metric = usual;
@@ -160,21 +169,26 @@ impl Growth {
     ///
     /// # Errors
     /// [`Cancelled`].
-    pub fn sweeps(&mut self, n_sweeps: u32, progress: &Progress) -> Result<(), Cancelled> {
+    pub fn sweeps(&mut self, limits: Limits, progress: &Progress) -> Result<(), Cancelled> {
         let metric = self.stiffness.metric(self.partial.n_there());
-        self.relax(n_sweeps, metric, progress)
+        self.relax(limits, metric, progress)
     }
 
     fn relax(
         &mut self,
-        n_sweeps: u32,
+        limits: Limits,
         metric: Metric,
         progress: &Progress,
     ) -> Result<(), Cancelled> {
         let mut level = Level::new(&self.partial, &self.positions, metric);
         self.metric = level.metric();
-        for _ in 0..n_sweeps {
-            self.n_relaxations += level.sweep(STILL, progress)?.n_relaxations;
+        let mut whole = None;
+        for _ in 0..limits.max_sweeps {
+            let sweep = level.sweep(STILL, progress)?;
+            self.n_relaxations += sweep.n_relaxations;
+            if sweep.is_settled(&mut whole, limits.tolerance) {
+                break;
+            }
         }
         level.store(&mut self.partial);
         Ok(())

@@ -1,35 +1,22 @@
 //! Sweeps of relaxation over all vertices of a level, colour by colour.
 //!
 //! Vertices of one colour are no neighbours, so that each of them reads only points that stay where
-//! they are: the result is the same for any order and any number of threads. Everything that a
-//! sweep needs lies in flat arrays, ordered by colour.
-
-use std::ops::Range;
+//! they are: the result is the same for any order and any number of threads.
 
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::fan::{self, Relaxed, Rest};
+use super::fan;
+use super::layout::{CHUNK, Chunk, Layout};
 use super::partial::Partial;
 use super::rest::Metric;
-use crate::mesh::{Id, VertexId};
 use crate::progress::{Cancelled, Progress};
 
-/// A colour with fewer vertices than this is relaxed by one thread: waking another takes longer.
-const LEAST_PARALLEL: usize = 512;
-/// How many vertices a thread takes at least.
-const LEAST_CHUNK: usize = 128;
-
-/// The mesh of a level, laid out for sweeps. A vertex is named by its slot in that layout.
+/// The mesh of a level, laid out for sweeps.
 #[derive(Clone, Debug)]
 pub struct Level {
-    order: Vec<VertexId>,
-    colours: Vec<Range<usize>>,
-    starts: Vec<u32>,
-    neighbours: Vec<u32>,
-    rests: Vec<Rest>,
+    layout: Layout,
     points: Vec<Point>,
-    metric: Metric,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +24,14 @@ struct Point {
     position: DVec3,
     /// How far its last relaxation moved it, in ring radii.
     moved: f64,
+}
+
+/// The points of the other colours while those of one are relaxed.
+struct Others<'a> {
+    /// The slots before that colour, and those after it.
+    sides: [&'a [Point]; 2],
+    /// The first slot of each side.
+    starts: [usize; 2],
 }
 
 /// What a sweep did.
@@ -50,44 +45,44 @@ pub struct Sweep {
     pub decrease: f64,
 }
 
+impl Sweep {
+    /// Whether it lowered the energy by no more than a share of `whole`, the energy of all faces,
+    /// which the first sweep of a level finds.
+    pub fn is_settled(&self, whole: &mut Option<f64>, tolerance: f64) -> bool {
+        // The first sweep sees every fan, and so every face three times.
+        let whole = *whole.get_or_insert(self.energy / 3.0);
+        self.decrease <= tolerance * whole
+    }
+
+    fn add(&mut self, other: &Self) {
+        self.n_relaxations += other.n_relaxations;
+        self.energy += other.energy;
+        self.decrease += other.decrease;
+    }
+}
+
 impl Level {
     /// Lays out the mesh that is on the sphere, with its rest shapes in the given metric.
     pub fn new(partial: &Partial, positions: &[DVec3], metric: Metric) -> Self {
-        let (order, colours) = by_colour(partial);
-        let mut slots = vec![u32::MAX; partial.sphere.len()];
-        for (slot, &v) in order.iter().enumerate() {
-            slots[v.index()] = slot as u32;
-        }
-        let mut starts = vec![0];
-        let mut neighbours = Vec::with_capacity(6 * order.len());
-        for &v in &order {
-            neighbours.extend(partial.ring(v).iter().map(|r| slots[r.index()]));
-            starts.push(neighbours.len() as u32);
-        }
-        let (rests, metric) = rest_shapes(&order, positions, partial, metric);
-        let points = order.iter().map(|&v| Point {
+        let layout = Layout::new(partial, positions, metric);
+        let points = layout.order.iter().map(|&v| Point {
             position: partial.sphere[v],
             moved: f64::INFINITY,
         });
         Self {
             points: points.collect(),
-            order,
-            colours,
-            starts,
-            neighbours,
-            rests,
-            metric,
+            layout,
         }
     }
 
     /// The metric, scaled to the area of the sphere.
     pub fn metric(&self) -> Metric {
-        self.metric
+        self.layout.metric
     }
 
     /// Puts the points back to where they were taken from.
     pub fn store(&self, partial: &mut Partial) {
-        for (&v, point) in self.order.iter().zip(&self.points) {
+        for (&v, point) in self.layout.order.iter().zip(&self.points) {
             partial.sphere[v] = point.position;
         }
     }
@@ -98,107 +93,61 @@ impl Level {
     /// # Errors
     /// [`Cancelled`].
     pub fn sweep(&mut self, still: f64, progress: &Progress) -> Result<Sweep, Cancelled> {
-        let mut sweep = Sweep::default();
-        let mut relaxed: Vec<Option<Relaxed>> = Vec::new();
-        for colour in self.colours.clone() {
+        let mut sum = Sweep::default();
+        let mut chunks = &self.layout.chunks[..];
+        for colour in &self.layout.colours {
             progress.check()?;
-            if colour.len() < LEAST_PARALLEL {
-                let mut ring = Vec::new();
-                let slots = colour.clone();
-                relaxed.clear();
-                relaxed.extend(slots.map(|slot| self.relax(slot, still, &mut ring)));
-            } else {
-                let slots = colour.clone().into_par_iter().with_min_len(LEAST_CHUNK);
-                slots
-                    .map_init(Vec::new, |ring, slot| self.relax(slot, still, ring))
-                    .collect_into_vec(&mut relaxed);
-            }
-            for (point, relaxed) in self.points[colour].iter_mut().zip(&relaxed) {
-                if let Some(relaxed) = relaxed {
-                    point.position = relaxed.position;
-                    point.moved = relaxed.moved;
-                    sweep.n_relaxations += 1;
-                    sweep.energy += relaxed.before;
-                    sweep.decrease += relaxed.before - relaxed.after;
-                }
+            let (before, rest) = self.points.split_at_mut(colour.start);
+            let (points, after) = rest.split_at_mut(colour.len());
+            let others = Others {
+                sides: [before, after],
+                starts: [0, colour.end],
+            };
+            let (own, later) = chunks.split_at(points.len().div_ceil(CHUNK));
+            chunks = later;
+            let pairs = points.par_chunks_mut(CHUNK).zip(own);
+            let sweeps: Vec<Sweep> = pairs
+                .map(|(points, chunk)| relax_chunk(points, chunk, &others, still))
+                .collect();
+            for sweep in &sweeps {
+                sum.add(sweep);
             }
         }
-        Ok(sweep)
+        Ok(sum)
     }
+}
 
-    /// Relaxes the vertex of a slot, unless everything around it is still.
-    fn relax(&self, slot: usize, still: f64, ring: &mut Vec<DVec3>) -> Option<Relaxed> {
-        let corners = self.starts[slot] as usize..self.starts[slot + 1] as usize;
-        let Point { position, moved } = self.points[slot];
-        let mut is_still = moved < still;
+/// Relaxes the vertices of a chunk, unless everything around them is still.
+fn relax_chunk(points: &mut [Point], chunk: &Chunk, others: &Others<'_>, still: f64) -> Sweep {
+    let mut sweep = Sweep::default();
+    let mut ring = Vec::new();
+    for (point, (neighbours, rests)) in points.iter_mut().zip(chunk.fans()) {
+        let mut is_still = point.moved < still;
         ring.clear();
-        for &neighbour in &self.neighbours[corners.clone()] {
-            let point = self.points[neighbour as usize];
-            is_still &= point.moved < still;
-            ring.push(point.position);
+        for &slot in neighbours {
+            let other = others.get(slot as usize);
+            is_still &= other.moved < still;
+            ring.push(other.position);
         }
         if is_still {
-            return None;
+            continue;
         }
         ring.push(ring[0]);
-        Some(fan::relax(position, ring, &self.rests[corners]))
+        let relaxed = fan::relax(point.position, &ring, rests);
+        point.position = relaxed.position;
+        point.moved = relaxed.moved;
+        sweep.add(&Sweep {
+            n_relaxations: 1,
+            energy: relaxed.before,
+            decrease: relaxed.before - relaxed.after,
+        });
     }
+    sweep
 }
 
-/// The vertices ordered by colour, and the range of each colour.
-fn by_colour(partial: &Partial) -> (Vec<VertexId>, Vec<Range<usize>>) {
-    let mut buckets: Vec<Vec<VertexId>> = Vec::new();
-    for v in partial.there() {
-        let colour = partial.colour(v) as usize;
-        if colour >= buckets.len() {
-            buckets.resize(colour + 1, Vec::new());
-        }
-        buckets[colour].push(v);
+impl Others<'_> {
+    fn get(&self, slot: usize) -> &Point {
+        let side = usize::from(slot >= self.starts[1]);
+        &self.sides[side][slot - self.starts[side]]
     }
-    let mut end = 0;
-    let ranges = buckets.iter().map(|bucket| {
-        let start = end;
-        end += bucket.len();
-        start..end
-    });
-    let ranges = ranges.collect();
-    (buckets.concat(), ranges)
-}
-
-/// The rest shape of every corner in the order of the layout, scaled to the area of the sphere.
-fn rest_shapes(
-    order: &[VertexId],
-    positions: &[DVec3],
-    partial: &Partial,
-    metric: Metric,
-) -> (Vec<Rest>, Metric) {
-    let corners = order.iter().flat_map(|&p| {
-        let ring = partial.ring(p);
-        (0..ring.len()).map(move |i| [p, ring[i], ring[(i + 1) % ring.len()]])
-    });
-    let corners: Vec<[VertexId; 3]> = corners.collect();
-    let unscaled = Metric {
-        scale: 1.0,
-        ..metric
-    };
-    let rest = |corner: &[VertexId; 3]| {
-        let [p, b, c] = corner.map(|v| positions[v.index()]);
-        unscaled.rest(p, b, c)
-    };
-    let mut rests: Vec<Rest> = if corners.len() < LEAST_PARALLEL {
-        corners.iter().map(rest).collect()
-    } else {
-        corners
-            .par_iter()
-            .with_min_len(LEAST_CHUNK)
-            .map(rest)
-            .collect()
-    };
-    // Every face has three corners.
-    let double_area = rests.iter().map(|r| r.square.sqrt()).sum::<f64>() / 3.0;
-    let metric = metric.scaled_to_sphere(double_area);
-    for rest in &mut rests {
-        rest.square *= metric.scale.powi(2);
-    }
-    (rests, metric)
 }

@@ -11,6 +11,7 @@ mod energy;
 mod fan;
 mod finish;
 mod growth;
+mod layout;
 mod level;
 mod partial;
 mod proposal;
@@ -167,6 +168,16 @@ impl From<PredictError> for Error {
 /// [`Error`]; for a predictor that returns, only when cancelled or when the coordinates of doubles
 /// are too coarse for the mesh.
 pub fn embed(
+    hierarchy: &CollapseHierarchy,
+    predictor: &dyn OffsetPredictor,
+    settings: &Settings,
+    progress: &Progress,
+) -> Result<Embedded, Error> {
+    // Loops of a few microseconds are worth sharing only from inside the thread pool.
+    rayon::scope(|_| embed_in_pool(hierarchy, predictor, settings, progress))
+}
+
+fn embed_in_pool(
     hierarchy: &CollapseHierarchy,
     predictor: &dyn OffsetPredictor,
     settings: &Settings,

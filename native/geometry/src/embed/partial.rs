@@ -1,9 +1,15 @@
 //! The part of a mesh that is on the sphere while vertices come and go: rings, points, colours.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::hierarchy::{Collapse, CollapseHierarchy};
-use crate::mesh::{TriangleMesh, VertexId, VertexMap};
+use crate::mesh::{Id, TriangleMesh, VertexId, VertexMap};
+
+/// How many rings a thread copies at least.
+const LEAST_CHUNK: usize = 512;
+/// The colour of vertices that are not there.
+const NOT_THERE: u32 = u32::MAX;
 
 /// Vertices with points on the sphere, and the mesh that they make.
 #[derive(Clone, Debug)]
@@ -24,7 +30,7 @@ impl Partial {
         let mut partial = Self {
             sphere: VertexMap::filled(n, DVec3::ZERO),
             rings: VertexMap::filled(n, Vec::new()),
-            colours: VertexMap::filled(n, 0),
+            colours: VertexMap::filled(n, NOT_THERE),
             n_there: 4,
         };
         let corners = [
@@ -46,13 +52,16 @@ impl Partial {
     /// A whole mesh.
     pub fn whole(mesh: &TriangleMesh, sphere: VertexMap<DVec3>) -> Self {
         let n = mesh.n_vertices();
+        let ring = |i| mesh.neighbours(VertexId::from_index(i)).collect();
+        let rings = (0..n)
+            .into_par_iter()
+            .with_min_len(LEAST_CHUNK)
+            .map(ring)
+            .collect();
         let mut partial = Self {
             sphere,
-            rings: mesh
-                .vertex_ids()
-                .map(|v| mesh.neighbours(v).collect())
-                .collect(),
-            colours: VertexMap::filled(n, u32::MAX),
+            rings: VertexMap::from_vec(rings),
+            colours: VertexMap::filled(n, NOT_THERE),
             n_there: n,
         };
         for v in mesh.vertex_ids() {
@@ -66,10 +75,10 @@ impl Partial {
         self.n_there
     }
 
-    /// The vertices that are there.
-    pub fn there(&self) -> impl Iterator<Item = VertexId> {
-        let rings = self.rings.iter_ids();
-        rings.filter(|(_, ring)| !ring.is_empty()).map(|(v, _)| v)
+    /// The vertices that are there, and their colours.
+    pub fn there(&self) -> impl Iterator<Item = (VertexId, u32)> {
+        let colours = self.colours.iter_ids().map(|(v, &colour)| (v, colour));
+        colours.filter(|&(_, colour)| colour != NOT_THERE)
     }
 
     /// The neighbours of a vertex, counter-clockwise; none when it is not there.
@@ -91,11 +100,6 @@ impl Partial {
             .iter()
             .filter(|v| self.rings[into].contains(v));
         self.n_there > 4 && common.count() == 2
-    }
-
-    /// The colour of a vertex that is there.
-    pub fn colour(&self, vertex: VertexId) -> u32 {
-        self.colours[vertex]
     }
 
     /// The sphere points of a ring, the first again at the end.
@@ -143,6 +147,9 @@ impl Partial {
             self.rings[side].remove(at);
         }
         self.rings[vertex].clear();
+        self.colours[vertex] = NOT_THERE;
+        // It has new neighbours, and one of them may have its colour.
+        self.colours[old] = self.free_colour(self.ring(old));
         self.n_there -= 1;
     }
 
@@ -155,7 +162,8 @@ impl Partial {
     /// The smallest colour that none of the ring has.
     fn free_colour(&self, ring: &[VertexId]) -> u32 {
         let free = |&colour: &u32| ring.iter().all(|&v| self.colours[v] != colour);
-        (0..u32::MAX).find(free).unwrap_or(u32::MAX)
+        let found = (0..NOT_THERE).find(free);
+        found.expect("a ring has fewer vertices than there are colours")
     }
 }
 

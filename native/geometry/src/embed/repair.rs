@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::growth::{GrowError, Growth};
+use super::growth::{GrowError, Growth, Limits};
 use super::partial::Partial;
 use super::rest::Stiffness;
 use crate::hierarchy::Collapse;
@@ -17,8 +17,11 @@ use crate::sphere_map::{is_positive, triple_product};
 const MAX_SHARE: f64 = 0.5;
 /// The largest valence that a collapse may make while there are others.
 const MAX_VALENCE: usize = 12;
-/// Sweeps over all vertices in the end.
-const N_SWEEPS: u32 = 2;
+/// Over all vertices in the end.
+const SMOOTHING: Limits = Limits {
+    max_sweeps: 2,
+    tolerance: 0.0,
+};
 
 /// A map without folds.
 #[derive(Clone, Debug)]
@@ -78,7 +81,7 @@ fn put_back(
             progress.at(i as f64 / removed.len() as f64)?;
         }
     }
-    Ok(growth.sweeps(N_SWEEPS, progress)?)
+    Ok(growth.sweeps(SMOOTHING, progress)?)
 }
 
 /// A map from which the folds are taken out.
@@ -91,7 +94,7 @@ impl Clearing {
     /// Collapses until no fan is bad; false when too many would have to go.
     fn clear(&mut self, progress: &Progress) -> Result<bool, Cancelled> {
         let n_whole = self.partial.n_there();
-        let mut suspects: Vec<VertexId> = self.partial.there().collect();
+        let mut suspects: Vec<VertexId> = self.partial.there().map(|(v, _)| v).collect();
         let mut forced = false;
         loop {
             suspects.retain(|&v| !self.partial.ring(v).is_empty() && self.badness(v) > 0);

@@ -1,6 +1,6 @@
 //! The geometric solver: progressive spherical embedding (Praun & Hoppe 2003).
 
-use super::growth::{GrowError, Growth};
+use super::growth::{GrowError, Growth, Limits};
 use super::rest::Stiffness;
 use super::{OffsetPredictor, PredictError, Proposal};
 use crate::hierarchy::CollapseHierarchy;
@@ -10,17 +10,20 @@ use crate::progress::Progress;
 /// and relaxes in between, so that low frequencies are settled while there are few vertices.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Solver {
-    /// Sweeps at each level below 1,000 vertices.
-    pub n_coarse_sweeps: u32,
-    /// Sweeps at each level from 1,000 vertices on.
-    pub n_fine_sweeps: u32,
+    /// Sweeps at each level below 1,000 vertices, at most.
+    pub max_coarse_sweeps: u32,
+    /// Sweeps at each level from 1,000 vertices on, at most.
+    pub max_fine_sweeps: u32,
+    /// The sweeps of a level end when one lowers the energy by less than this share.
+    pub tolerance: f64,
 }
 
 impl Default for Solver {
     fn default() -> Self {
         Self {
-            n_coarse_sweeps: 15,
-            n_fine_sweeps: 5,
+            max_coarse_sweeps: 30,
+            max_fine_sweeps: 10,
+            tolerance: 5e-4,
         }
     }
 }
@@ -78,13 +81,18 @@ impl Solver {
                 .collect();
             growth.insert_all(&collapses, progress)?;
             let n_there = growth.partial.n_there();
-            let [factor, n_sweeps] = if n_there < 1_000 {
-                [1.15, f64::from(self.n_coarse_sweeps)]
+            let (factor, max_sweeps) = if n_there < 1_000 {
+                (1.15, self.max_coarse_sweeps)
             } else {
-                [1.3, f64::from(self.n_fine_sweeps)]
+                (1.3, self.max_fine_sweeps)
             };
             if n_there as f64 >= factor * n_relaxed as f64 && n_there < n_vertices {
-                growth.sweeps(n_sweeps as u32, progress)?;
+                let tolerance = self.tolerance;
+                let limits = Limits {
+                    max_sweeps,
+                    tolerance,
+                };
+                growth.sweeps(limits, progress)?;
                 n_relaxed = n_there;
             }
             progress.at(n_there as f64 / n_vertices as f64)?;

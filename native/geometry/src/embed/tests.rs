@@ -10,7 +10,7 @@ pub fn hierarchy(mesh: TriangleMesh) -> CollapseHierarchy {
     let mut builder = HierarchyBuilder::new();
     while partial.n_there() > 4 {
         let mut blocked = VertexMap::filled(mesh.n_vertices(), false);
-        let there: Vec<VertexId> = partial.there().collect();
+        let there: Vec<VertexId> = partial.there().map(|(v, _)| v).collect();
         for v in there {
             let length = |&u: &VertexId| mesh.position(u).distance(mesh.position(v));
             let ring = partial.ring(v);
@@ -31,7 +31,7 @@ pub fn hierarchy(mesh: TriangleMesh) -> CollapseHierarchy {
         }
         builder.end_round();
     }
-    let left: Vec<VertexId> = partial.there().collect();
+    let left: Vec<VertexId> = partial.there().map(|(v, _)| v).collect();
     let face = |v: VertexId, i: usize| [v, partial.ring(v)[i], partial.ring(v)[(i + 1) % 3]];
     let apex = left[0];
     let [a, b, c] = [0, 1, 2].map(|i| partial.ring(apex)[i]);

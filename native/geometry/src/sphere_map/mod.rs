@@ -13,10 +13,11 @@ mod travel;
 use std::f64::consts::PI;
 
 use glam::DVec3;
+use rayon::prelude::*;
 use robust::{Coord3D, orient3d};
 use thiserror::Error;
 
-use crate::mesh::{FaceId, TriangleMesh, VertexId, VertexMap};
+use crate::mesh::{FaceId, Id, TriangleMesh, VertexId, VertexMap};
 pub use cover::{NotACover, check_cover};
 use locate::HintGrid;
 pub use travel::walk_along;
@@ -191,20 +192,25 @@ pub fn is_positive(a: DVec3, b: DVec3, c: DVec3) -> bool {
     orient3d(coord(a), coord(b), coord(c), coord(DVec3::ZERO)) > 0.0
 }
 
+/// How many faces a thread looks at at once; sums are made per chunk, whatever the threads.
+const CHUNK: usize = 512;
+
 /// The faces whose spherical triangle is not positively oriented.
 pub fn folded_faces(faces: &[[VertexId; 3]], sphere: &VertexMap<DVec3>) -> Vec<FaceId> {
     let folded = |f: &[VertexId; 3]| !is_positive(sphere[f[0]], sphere[f[1]], sphere[f[2]]);
-    (0..)
-        .map(FaceId)
-        .zip(faces)
+    let numbered = faces.par_iter().with_min_len(CHUNK).enumerate();
+    numbered
         .filter(|(_, f)| folded(f))
-        .map(|(id, _)| id)
+        .map(|(i, _)| FaceId::from_index(i))
         .collect()
 }
 
 /// How often the sphere is covered: the sum of the signed solid angles over 4π, rounded.
 pub fn degree(faces: &[[VertexId; 3]], sphere: &VertexMap<DVec3>) -> i64 {
-    degree_of(faces.iter().map(|f| f.map(|v| sphere[v])))
+    let angle = |f: &[VertexId; 3]| solid_angle(sphere[f[0]], sphere[f[1]], sphere[f[2]]);
+    let chunks = faces.par_chunks(CHUNK);
+    let angles: Vec<f64> = chunks.map(|faces| faces.iter().map(angle).sum()).collect();
+    (angles.iter().sum::<f64>() / (4.0 * PI)).round() as i64
 }
 
 fn degree_of(triangles: impl Iterator<Item = [DVec3; 3]>) -> i64 {
