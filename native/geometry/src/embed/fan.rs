@@ -3,7 +3,8 @@
 //! For a triangle with rest area A and corners p, b, c on the sphere,
 //! d = det(p, b, c) / 2A is its area ratio, g = Σ cot · |opposite edge|² / 2A its Dirichlet energy
 //! density, and A · g · (1 + 1/d²) its symmetric Dirichlet energy (Smith & Schaefer 2015): lowest
-//! for an isometry, infinite where d reaches 0. Everything is computed from differences to p in
+//! for an isometry, infinite where d reaches 0. An even map adds A · W · (d + 1/d), which is lowest
+//! where areas are kept. Everything is computed from differences to p in
 //! its tangent plane, so that triangles of 10⁻⁷ keep their digits.
 
 use glam::{DVec2, DVec3};
@@ -21,6 +22,17 @@ pub struct Rest {
     pub square: f64,
 }
 
+/// What is around a vertex.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Fan<'a> {
+    /// The points of its ring on the sphere, the first again at the end.
+    pub ring: &'a [DVec3],
+    /// The rest shape of each triangle.
+    pub rests: &'a [Rest],
+    /// The weight W of an even area.
+    pub evenness: f64,
+}
+
 /// How a relaxation ended.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Relaxed {
@@ -35,7 +47,7 @@ pub struct Relaxed {
 }
 
 /// The energy of a fan with its first and second derivatives along the sphere.
-#[derive(Clone, Copy, PartialEq, Debug)]
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Derivatives {
     energy: f64,
     gradient: DVec2,
@@ -53,73 +65,102 @@ const MAX_HALVINGS: usize = 12;
 /// step to the cap, larger ones slow the descent.
 const LEAST_CURVATURE: f64 = 1e-2;
 
-/// The energy of the fan of `p`; infinite unless every triangle is positive. The ring is closed:
-/// its first point comes again at its end.
-pub fn energy(p: DVec3, ring: &[DVec3], rest: &[Rest]) -> f64 {
-    let mut total = 0.0;
-    let mut u = ring[0] - p;
-    let mut uu = u.length_squared();
-    for (rest, &c) in rest.iter().zip(&ring[1..]) {
-        let w = c - p;
-        let ww = w.length_squared();
-        let det = p.dot(u.cross(w));
-        if !(det > 0.0 && det * det > LEAST_SINE_SQUARED * uu * ww) {
-            return f64::INFINITY;
+impl Fan<'_> {
+    /// The energy with the vertex at `p`; infinite unless every triangle is positive.
+    pub fn energy(&self, p: DVec3) -> f64 {
+        let mut total = 0.0;
+        let mut u = self.ring[0] - p;
+        let mut uu = u.length_squared();
+        for (rest, &c) in self.rests.iter().zip(&self.ring[1..]) {
+            let w = c - p;
+            let ww = w.length_squared();
+            let det = p.dot(u.cross(w));
+            if !(det > 0.0 && det * det > LEAST_SINE_SQUARED * uu * ww) {
+                return f64::INFINITY;
+            }
+            let dirichlet = rest.cot_c * uu + rest.cot_b * ww + rest.cot_p * u.distance_squared(w);
+            let inverse = 1.0 / det;
+            let press = rest.square * inverse;
+            total += dirichlet * (1.0 + press * inverse) + self.evenness * (det + press);
+            u = w;
+            uu = ww;
         }
-        let dirichlet = rest.cot_c * uu + rest.cot_b * ww + rest.cot_p * u.distance_squared(w);
-        total += dirichlet * (1.0 + rest.square / (det * det));
-        u = w;
-        uu = ww;
+        0.5 * total
     }
-    0.5 * total
-}
 
-/// The energy of the fan of `p` and its derivatives in the tangent frame (x, y, p).
-pub fn derivatives(p: DVec3, (x, y): (DVec3, DVec3), ring: &[DVec3], rest: &[Rest]) -> Derivatives {
-    let local = |b: DVec3| {
-        let u = b - p;
-        DVec3::new(u.dot(x), u.dot(y), u.dot(p))
-    };
-    let mut total = 0.0;
-    let mut gradient = DVec2::ZERO;
-    let mut radial = 0.0;
-    let mut hessian = [0.0; 3];
-    let mut radius = 0.0;
-    let mut u = local(ring[0]);
-    let mut uu = u.length_squared();
-    for (rest, &c) in rest.iter().zip(&ring[1..]) {
-        let w = local(c);
-        let ww = w.length_squared();
-        let normal = u.cross(w);
-        let inverse = 1.0 / normal.z;
-        // The gradient of det(p, b, c) is b × c = normal + p × (c − b).
-        let turn = DVec2::new(normal.x - (w.y - u.y), normal.y + (w.x - u.x));
-        let pull = -2.0 * (rest.cot_c * u + rest.cot_b * w);
-        let dirichlet = rest.cot_c * uu + rest.cot_b * ww + rest.cot_p * u.distance_squared(w);
-        let barrier = rest.square * inverse * inverse;
-        let slope = 2.0 * barrier * inverse;
-        total += dirichlet * (1.0 + barrier);
-        gradient += pull.truncate() * (1.0 + barrier) - turn * (dirichlet * slope);
-        radial += pull.z * (1.0 + barrier) - dirichlet * slope * normal.z;
-        let bend = 3.0 * dirichlet * slope * inverse;
-        let stiff = 2.0 * (rest.cot_b + rest.cot_c) * (1.0 + barrier);
-        hessian[0] += stiff + turn.x * (bend * turn.x - 2.0 * slope * pull.x);
-        hessian[1] += bend * turn.x * turn.y - slope * (pull.x * turn.y + pull.y * turn.x);
-        hessian[2] += stiff + turn.y * (bend * turn.y - 2.0 * slope * pull.y);
-        radius += uu;
-        u = w;
-        uu = ww;
-    }
-    Derivatives {
-        energy: 0.5 * total,
-        gradient: 0.5 * gradient,
+    /// The energy with the vertex at `p`, and its derivatives in the tangent frame (x, y, p).
+    pub fn derivatives(&self, p: DVec3, (x, y): (DVec3, DVec3)) -> Derivatives {
+        let local = |b: DVec3| {
+            let u = b - p;
+            DVec3::new(u.dot(x), u.dot(y), u.dot(p))
+        };
+        let mut sum = Derivatives::default();
+        let mut radial = 0.0;
+        let mut u = local(self.ring[0]);
+        let mut uu = u.length_squared();
+        for (rest, &c) in self.rests.iter().zip(&self.ring[1..]) {
+            let w = local(c);
+            let ww = w.length_squared();
+            let normal = u.cross(w);
+            let inverse = 1.0 / normal.z;
+            // The gradient of det(p, b, c) is b × c = normal + p × (c − b).
+            let turn = DVec2::new(normal.x - (w.y - u.y), normal.y + (w.x - u.x));
+            let pull = -2.0 * (rest.cot_c * u + rest.cot_b * w);
+            let dirichlet = rest.cot_c * uu + rest.cot_b * ww + rest.cot_p * u.distance_squared(w);
+            let barrier = rest.square * inverse * inverse;
+            let slope = 2.0 * barrier * inverse;
+            let even = self.evenness;
+            sum.energy += dirichlet * (1.0 + barrier) + even * normal.z * (1.0 + barrier);
+            let press = dirichlet * slope - even * (1.0 - barrier);
+            sum.gradient += pull.truncate() * (1.0 + barrier) - turn * press;
+            radial += pull.z * (1.0 + barrier) - press * normal.z;
+            let bend = (3.0 * dirichlet * inverse + even) * slope;
+            let stiff = 2.0 * (rest.cot_b + rest.cot_c) * (1.0 + barrier);
+            let mixed = pull.x * turn.y + pull.y * turn.x;
+            sum.hessian[0] += stiff + turn.x * (bend * turn.x - 2.0 * slope * pull.x);
+            sum.hessian[1] += bend * turn.x * turn.y - slope * mixed;
+            sum.hessian[2] += stiff + turn.y * (bend * turn.y - 2.0 * slope * pull.y);
+            sum.radius_squared += uu;
+            u = w;
+            uu = ww;
+        }
         // Along a great circle the second derivative loses the radial part of the gradient.
-        hessian: [
-            0.5 * (hessian[0] - radial),
-            0.5 * hessian[1],
-            0.5 * (hessian[2] - radial),
-        ],
-        radius_squared: radius / rest.len() as f64,
+        sum.hessian[0] -= radial;
+        sum.hessian[2] -= radial;
+        Derivatives {
+            energy: 0.5 * sum.energy,
+            gradient: 0.5 * sum.gradient,
+            hessian: sum.hessian.map(|entry| 0.5 * entry),
+            radius_squared: sum.radius_squared / self.rests.len() as f64,
+        }
+    }
+
+    /// Moves a vertex from `p` to lower the energy: one safeguarded Newton step. The fan must be
+    /// positive and stays so.
+    pub fn relax(&self, p: DVec3) -> Relaxed {
+        let (x, y) = p.any_orthonormal_pair();
+        let at = self.derivatives(p, (x, y));
+        let stay = Relaxed {
+            position: p,
+            moved: 0.0,
+            before: at.energy,
+            after: at.energy,
+        };
+        let mut step = at.step();
+        for _ in 0..MAX_HALVINGS {
+            let position = (p + x * step.x + y * step.y).normalize_or(p);
+            let after = self.energy(position);
+            if after < at.energy {
+                return Relaxed {
+                    position,
+                    moved: position.distance(p) / at.radius_squared.sqrt(),
+                    after,
+                    ..stay
+                };
+            }
+            step *= 0.5;
+        }
+        stay
     }
 }
 
@@ -142,30 +183,118 @@ impl Derivatives {
     }
 }
 
-/// Moves `p` to lower the energy of its fan: one safeguarded Newton step. The fan must be positive
-/// and stays so.
-pub fn relax(p: DVec3, ring: &[DVec3], rest: &[Rest]) -> Relaxed {
-    let (x, y) = p.any_orthonormal_pair();
-    let at = derivatives(p, (x, y), ring, rest);
-    let stay = Relaxed {
-        position: p,
-        moved: 0.0,
-        before: at.energy,
-        after: at.energy,
-    };
-    let mut step = at.step();
-    for _ in 0..MAX_HALVINGS {
-        let position = (p + x * step.x + y * step.y).normalize_or(p);
-        let after = energy(position, ring, rest);
-        if after < at.energy {
-            return Relaxed {
-                position,
-                moved: position.distance(p) / at.radius_squared.sqrt(),
-                after,
-                ..stay
-            };
-        }
-        step *= 0.5;
+#[cfg(test)]
+mod tests {
+    use super::super::rest::Metric;
+    use super::*;
+    use crate::random::Random;
+
+    /// A random star of `n` triangles around a random point.
+    fn star(seed: u64, n: usize, evenness: f64) -> (DVec3, Vec<DVec3>, Vec<Rest>) {
+        let mut random = Random::new(seed);
+        let p = DVec3::new(random.unit(), random.unit(), 1.0 + random.unit());
+        let p = p.normalize_or(DVec3::Z);
+        let (x, y) = p.any_orthonormal_pair();
+        let point = |i: usize, random: &mut Random| {
+            let angle = (i as f64 + 0.6 * random.unit()) / n as f64 * std::f64::consts::TAU;
+            let radius = 0.1 + 0.3 * random.unit();
+            (p + radius * (x * angle.cos() + y * angle.sin())).normalize_or(p)
+        };
+        let mut ring: Vec<DVec3> = (0..n).map(|i| point(i, &mut random)).collect();
+        ring.push(ring[0]);
+        let metric = Metric {
+            delta: 0.05,
+            floor: 0.0,
+            scale: 0.8,
+            evenness,
+        };
+        let shapes = ring
+            .windows(2)
+            .map(|e| metric.rest(p, 1.3 * e[0], e[1] + 0.02 * x));
+        let rests = shapes.collect();
+        (p, ring, rests)
     }
-    stay
+
+    #[test]
+    fn derivatives_are_those_of_the_energy_by_central_differences() {
+        for (seed, evenness) in (0..60).map(|i| (i, [0.0, 1.0, 30.0][i as usize % 3])) {
+            let (p, ring, rests) = star(seed, 3 + seed as usize % 7, evenness);
+            let fan = Fan {
+                ring: &ring,
+                rests: &rests,
+                evenness,
+            };
+            let (x, y) = p.any_orthonormal_pair();
+            let at = |s: f64, t: f64| {
+                // Along great circles, where second derivatives are those of the sphere.
+                let step = x * s + y * t;
+                let angle = step.length().max(f64::MIN_POSITIVE);
+                fan.energy(p * angle.cos() + step / angle * angle.sin())
+            };
+            let d = fan.derivatives(p, (x, y));
+            let h = 1e-5;
+            let gradient = [at(h, 0.0) - at(-h, 0.0), at(0.0, h) - at(0.0, -h)];
+            let size = d.gradient.length() + d.energy;
+            assert!(
+                (gradient[0] / (2.0 * h) - d.gradient.x).abs() < 1e-6 * size,
+                "{seed}"
+            );
+            assert!(
+                (gradient[1] / (2.0 * h) - d.gradient.y).abs() < 1e-6 * size,
+                "{seed}"
+            );
+            assert!(
+                (fan.energy(p) - d.energy).abs() < 1e-12 * d.energy,
+                "{seed}"
+            );
+            let h = 1e-4;
+            let middle = 2.0 * at(0.0, 0.0);
+            let hessian = [
+                at(h, 0.0) + at(-h, 0.0) - middle,
+                (at(h, h) - at(h, -h) - at(-h, h) + at(-h, -h)) / 4.0,
+                at(0.0, h) + at(0.0, -h) - middle,
+            ];
+            let size = d.hessian.iter().fold(0.0_f64, |m, e| m.max(e.abs()));
+            for (found, wanted) in hessian.iter().zip(d.hessian) {
+                assert!(
+                    (found / (h * h) - wanted).abs() < 1e-3 * size,
+                    "{seed}: {wanted}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn relaxing_lowers_the_energy_until_it_stays() {
+        for seed in 0..20 {
+            let (mut p, ring, rests) = star(seed, 6, 0.0);
+            let fan = Fan {
+                ring: &ring,
+                rests: &rests,
+                evenness: 0.0,
+            };
+            let mut last = fan.energy(p);
+            for _ in 0..50 {
+                let relaxed = fan.relax(p);
+                assert!(relaxed.after <= last * (1.0 + 1e-12));
+                assert!((relaxed.position.length() - 1.0).abs() < 1e-12);
+                (p, last) = (relaxed.position, relaxed.after);
+            }
+            assert!(fan.relax(p).moved < 1e-6, "{seed}");
+        }
+    }
+
+    #[test]
+    fn a_folded_fan_has_infinite_energy() {
+        let (p, ring, rests) = star(3, 5, 0.0);
+        let fan = Fan {
+            ring: &ring,
+            rests: &rests,
+            evenness: 0.0,
+        };
+        assert!(fan.energy(p).is_finite());
+        assert!(fan.energy(-p).is_infinite());
+        let beyond = ring[0] + 2.0 * (ring[0] - p);
+        assert!(fan.energy(beyond.normalize_or(p)).is_infinite());
+    }
 }

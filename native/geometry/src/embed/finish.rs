@@ -6,7 +6,7 @@ use super::Settings;
 use super::growth::STILL;
 use super::level::Level;
 use super::partial::Partial;
-use super::rest::{Metric, to_size_one};
+use super::rest::{Stiffness, to_size_one};
 use crate::mesh::{TriangleMesh, VertexMap};
 use crate::progress::{Cancelled, Progress};
 
@@ -26,12 +26,12 @@ pub struct Finish {
 pub fn finish(
     mesh: &TriangleMesh,
     sphere: VertexMap<DVec3>,
-    settings: &Settings,
+    (settings, stiffness): (&Settings, Stiffness),
     progress: &Progress,
 ) -> Result<Finish, Cancelled> {
     let mut partial = Partial::whole(mesh, sphere);
     let positions = to_size_one(mesh.positions());
-    let mut level = Level::new(&partial, &positions, Metric::FINISH);
+    let mut level = Level::new(&partial, &positions, stiffness.finish());
     let (mut n_relaxations, mut n_sweeps, mut complete) = (0, 0, false);
     let mut whole = None;
     while n_sweeps < settings.max_sweeps && !complete {

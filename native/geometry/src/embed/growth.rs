@@ -4,7 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use thiserror::Error;
 
-use super::fan::{self, Rest};
+use super::fan::{Fan, Rest};
 use super::level::Level;
 use super::partial::Partial;
 use super::rest::{Metric, Stiffness, to_size_one};
@@ -116,8 +116,13 @@ impl Growth {
     fn place(&self, collapse: Collapse<'_>) -> Option<DVec3> {
         let ring = self.partial.closed_ring(collapse.ring);
         let rests = self.rests(collapse);
-        let start = room::point(&ring).filter(|&p| fan::energy(p, &ring, &rests).is_finite())?;
-        let settle = |p, _| fan::relax(p, &ring, &rests).position;
+        let fan = Fan {
+            ring: &ring,
+            rests: &rests,
+            evenness: self.metric.evenness,
+        };
+        let start = room::point(&ring).filter(|&p| fan.energy(p).is_finite())?;
+        let settle = |p, _| fan.relax(p).position;
         Some((0..N_SETTLING).fold(start, settle))
     }
 
@@ -140,8 +145,12 @@ impl Growth {
                 vertex,
                 ring: around,
             });
-            let relaxed = fan::relax(self.partial.sphere[vertex], &ring, &rests);
-            self.partial.sphere[vertex] = relaxed.position;
+            let fan = Fan {
+                ring: &ring,
+                rests: &rests,
+                evenness: self.metric.evenness,
+            };
+            self.partial.sphere[vertex] = fan.relax(self.partial.sphere[vertex]).position;
             self.n_relaxations += 1;
         }
     }

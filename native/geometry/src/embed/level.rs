@@ -6,7 +6,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::fan;
+use super::fan::Fan;
 use super::layout::{CHUNK, Chunk, Layout};
 use super::partial::Partial;
 use super::rest::Metric;
@@ -32,6 +32,8 @@ struct Others<'a> {
     sides: [&'a [Point]; 2],
     /// The first slot of each side.
     starts: [usize; 2],
+    /// The weight of keeping areas.
+    evenness: f64,
 }
 
 /// What a sweep did.
@@ -102,12 +104,13 @@ impl Level {
             let others = Others {
                 sides: [before, after],
                 starts: [0, colour.end],
+                evenness: self.layout.metric.evenness,
             };
             let (own, later) = chunks.split_at(points.len().div_ceil(CHUNK));
             chunks = later;
             let pairs = points.par_chunks_mut(CHUNK).zip(own);
             let sweeps: Vec<Sweep> = pairs
-                .map(|(points, chunk)| relax_chunk(points, chunk, &others, still))
+                .map(|(points, chunk)| others.relax(points, chunk, still))
                 .collect();
             for sweep in &sweeps {
                 sum.add(sweep);
@@ -117,35 +120,40 @@ impl Level {
     }
 }
 
-/// Relaxes the vertices of a chunk, unless everything around them is still.
-fn relax_chunk(points: &mut [Point], chunk: &Chunk, others: &Others<'_>, still: f64) -> Sweep {
-    let mut sweep = Sweep::default();
-    let mut ring = Vec::new();
-    for (point, (neighbours, rests)) in points.iter_mut().zip(chunk.fans()) {
-        let mut is_still = point.moved < still;
-        ring.clear();
-        for &slot in neighbours {
-            let other = others.get(slot as usize);
-            is_still &= other.moved < still;
-            ring.push(other.position);
-        }
-        if is_still {
-            continue;
-        }
-        ring.push(ring[0]);
-        let relaxed = fan::relax(point.position, &ring, rests);
-        point.position = relaxed.position;
-        point.moved = relaxed.moved;
-        sweep.add(&Sweep {
-            n_relaxations: 1,
-            energy: relaxed.before,
-            decrease: relaxed.before - relaxed.after,
-        });
-    }
-    sweep
-}
-
 impl Others<'_> {
+    /// Relaxes the vertices of a chunk, unless everything around them is still.
+    fn relax(&self, points: &mut [Point], chunk: &Chunk, still: f64) -> Sweep {
+        let mut sweep = Sweep::default();
+        let mut ring = Vec::new();
+        for (point, (neighbours, rests)) in points.iter_mut().zip(chunk.fans()) {
+            let mut is_still = point.moved < still;
+            ring.clear();
+            for &slot in neighbours {
+                let other = self.get(slot as usize);
+                is_still &= other.moved < still;
+                ring.push(other.position);
+            }
+            if is_still {
+                continue;
+            }
+            ring.push(ring[0]);
+            let fan = Fan {
+                ring: &ring,
+                rests,
+                evenness: self.evenness,
+            };
+            let relaxed = fan.relax(point.position);
+            point.position = relaxed.position;
+            point.moved = relaxed.moved;
+            sweep.add(&Sweep {
+                n_relaxations: 1,
+                energy: relaxed.before,
+                decrease: relaxed.before - relaxed.after,
+            });
+        }
+        sweep
+    }
+
     fn get(&self, slot: usize) -> &Point {
         let side = usize::from(slot >= self.starts[1]);
         &self.sides[side][slot - self.starts[side]]

@@ -13,6 +13,10 @@ const LEAST_EDGE_SQUARED: f64 = 1e-13;
 /// The same for triangles of equal size: longer than any edge.
 const EQUAL_EDGE_SQUARED: f64 = 100.0;
 
+/// The weight of areas in an even map. At 1 the areas of a fixed primitive's faces still vary half
+/// as much as without; far beyond 30 its quads are sheared.
+const EVENNESS: f64 = 30.0;
+
 /// How the metric of the surface is made regular and scaled.
 ///
 /// The squared length of every edge of a triangle grows by δ times their mean, plus a constant.
@@ -25,6 +29,8 @@ pub struct Metric {
     pub floor: f64,
     /// What twice an area is multiplied by, so that the level has the area of the sphere.
     pub scale: f64,
+    /// The weight of keeping areas, see [`Fan`](super::fan::Fan).
+    pub evenness: f64,
 }
 
 /// Which shape the rest metric has.
@@ -32,6 +38,8 @@ pub struct Metric {
 pub enum Stiffness {
     /// That of the surface, smoothed while there are few vertices.
     Shape,
+    /// The same, and areas are kept rather than angles.
+    Even,
     /// Equilateral triangles of one size, whatever the surface.
     Equal,
 }
@@ -39,16 +47,32 @@ pub enum Stiffness {
 impl Stiffness {
     /// The metric for a level of `n_vertices` of a mesh of size 1; not yet scaled.
     pub fn metric(self, n_vertices: usize) -> Metric {
-        let (delta, floor) = match (self, n_vertices) {
-            (Self::Shape, ..1_000) => (0.05, LEAST_EDGE_SQUARED),
-            (Self::Shape, 1_000..5_000) => (0.01, LEAST_EDGE_SQUARED),
-            (Self::Shape, _) => (1e-3, LEAST_EDGE_SQUARED),
-            (Self::Equal, _) => (0.0, EQUAL_EDGE_SQUARED),
+        let delta = match n_vertices {
+            ..1_000 => 0.05,
+            1_000..5_000 => 0.01,
+            _ => 1e-3,
         };
-        Metric {
-            delta,
-            floor,
-            scale: 1.0,
+        match self {
+            Self::Equal => Metric {
+                delta: 0.0,
+                floor: EQUAL_EDGE_SQUARED,
+                ..Metric::FINISH
+            },
+            _ => Metric {
+                delta,
+                ..self.finish()
+            },
+        }
+    }
+
+    /// The metric in which a map is finished: hardly smoothed.
+    pub fn finish(self) -> Metric {
+        match self {
+            Self::Even => Metric {
+                evenness: EVENNESS,
+                ..Metric::FINISH
+            },
+            _ => Metric::FINISH,
         }
     }
 }
@@ -66,11 +90,12 @@ pub fn to_size_one(positions: &[DVec3]) -> Vec<DVec3> {
 }
 
 impl Metric {
-    /// The metric in which a map is finished: hardly smoothed.
-    pub const FINISH: Self = Self {
+    /// The metric in which a map is finished.
+    const FINISH: Self = Self {
         delta: 1e-4,
         floor: LEAST_EDGE_SQUARED,
         scale: 1.0,
+        evenness: 0.0,
     };
 
     /// The rest shape of the triangle with these corners, seen from the first.

@@ -38,33 +38,39 @@ impl OffsetPredictor for Solver {
         hierarchy: &CollapseHierarchy,
         progress: &Progress,
     ) -> Result<Proposal, PredictError> {
-        let mut n_relaxations = 0;
-        // Triangles of equal size have the most room; relaxation brings the shape back later.
-        for stiffness in [Stiffness::Shape, Stiffness::Equal] {
-            let mut growth = Growth::tetrahedron(hierarchy, stiffness);
-            let grown = self.grow(hierarchy, &mut growth, progress);
-            n_relaxations += growth.n_relaxations;
-            match grown {
-                Err(GrowError::NoRoom { .. }) if stiffness == Stiffness::Shape => {}
-                Err(GrowError::NoRoom { vertex }) => {
-                    let reason = format!("there is no room for vertex {vertex} on the sphere");
-                    return Err(PredictError::Failed { reason });
-                }
-                Err(GrowError::Cancelled(cancelled)) => return Err(cancelled.into()),
-                Ok(()) => {
-                    let sphere = growth.partial.sphere;
-                    return Ok(Proposal {
-                        sphere,
-                        n_relaxations,
-                    });
-                }
-            }
-        }
-        unreachable!("the loop returns on its last turn")
+        self.propose_as(Stiffness::Shape, hierarchy, progress)
     }
 }
 
 impl Solver {
+    /// Proposes a map in a metric of choice.
+    pub(super) fn propose_as(
+        self,
+        wanted: Stiffness,
+        hierarchy: &CollapseHierarchy,
+        progress: &Progress,
+    ) -> Result<Proposal, PredictError> {
+        let mut growth = Growth::tetrahedron(hierarchy, wanted);
+        let mut n_relaxations = 0;
+        let mut grown = self.grow(hierarchy, &mut growth, progress);
+        if let Err(GrowError::NoRoom { .. }) = grown {
+            n_relaxations += growth.n_relaxations;
+            // Triangles of equal size have the most room; relaxation brings the shape back later.
+            growth = Growth::tetrahedron(hierarchy, Stiffness::Equal);
+            grown = self.grow(hierarchy, &mut growth, progress);
+        }
+        match grown {
+            Err(GrowError::Cancelled(cancelled)) => Err(cancelled.into()),
+            Err(error @ GrowError::NoRoom { .. }) => Err(PredictError::Failed {
+                reason: error.to_string(),
+            }),
+            Ok(()) => Ok(Proposal {
+                n_relaxations: n_relaxations + growth.n_relaxations,
+                sphere: growth.partial.sphere,
+            }),
+        }
+    }
+
     /// Undoes every round, with sweeps each time the number of vertices has grown enough.
     fn grow(
         self,

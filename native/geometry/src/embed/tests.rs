@@ -74,3 +74,27 @@ fn a_sphere_embeds_as_itself_up_to_rotation() {
         );
     }
 }
+
+#[test]
+fn an_even_map_keeps_areas_better() {
+    let hierarchy = hierarchy(shapes::limbs(2, 8));
+    let spread = |map: &SphereMap| {
+        let mesh = map.mesh();
+        let ratios = mesh.face_ids().map(|f| {
+            let [a, b, c] = mesh.triangle(f);
+            let [p, q, r] = map.sphere_triangle(f);
+            let area = (b - a).cross(c - a).length();
+            (area, crate::sphere_map::triple_product(p, q, r) / area)
+        });
+        let ratios: Vec<(f64, f64)> = ratios.collect();
+        let total: f64 = ratios.iter().map(|(area, _)| area).sum();
+        let mean = ratios.iter().map(|(area, r)| area * r).sum::<f64>() / total;
+        let squares = ratios.iter().map(|(area, r)| area * (r - mean).powi(2));
+        (squares.sum::<f64>() / total).sqrt() / mean
+    };
+    let even = even(&hierarchy, &Progress::none()).unwrap();
+    let settings = Settings::default();
+    let usual = embed(&hierarchy, &Solver::default(), &settings, &Progress::none()).unwrap();
+    let [even, usual] = [spread(&even), spread(&usual.map)];
+    assert!(even < 0.5 * usual, "{even} {usual}");
+}
