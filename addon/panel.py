@@ -11,6 +11,18 @@ from . import settings
 _reports: dict[str, dict[str, Any]] = {}
 
 
+_ROWS = (
+    ("Faces", "n_faces", "{:,}"),
+    ("Quads", "quads_pct", "{:.0f} %"),
+    ("Irregular vertices", "irregular_pct", "{:.1f} %"),
+    ("Off the flow", "alignment_deg", "{:.1f}°"),
+    ("Edges on loops", "loop_edges_pct", "{:.0f} %"),
+    ("Edge length variation", "edge_cv", "{:.2f}"),
+    ("Mean distance", "chamfer_pct", "{:.3f} %"),
+    ("Largest distance", "hausdorff_pct", "{:.2f} %"),
+)
+
+
 class VIEW3D_PT_orbflow(bpy.types.Panel):
     """Settings, the button, and the score of the last run."""
 
@@ -67,16 +79,12 @@ def sentence(report: dict[str, Any]) -> str:
 
 
 def rows(report: dict[str, Any]) -> list[tuple[str, str]]:
-    """The score as words and values."""
-    score = report["score"]
+    """The score as words and values; what does not apply is left out."""
+    figures = report["output"] | (report["score"] or {})
     return [
-        ("Faces", f"{report['output']['n_faces']:,}"),
-        ("Quads", f"{score['quads_pct']:.0f} %"),
-        ("Irregular vertices", f"{score['irregular_pct']:.1f} %"),
-        ("Flow deviation", f"{score['alignment_deg']:.1f}°"),
-        ("Edges on loops", f"{score['loop_edges_pct']:.0f} %"),
-        ("Mean distance", f"{score['chamfer_pct']:.3f} %"),
-        ("Edge length variation", f"{score['edge_cv']:.2f}"),
+        (words, form.format(figures[name]))
+        for words, name, form in _ROWS
+        if figures.get(name) is not None
     ]
 
 

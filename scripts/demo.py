@@ -81,8 +81,10 @@ def main(out: Path) -> None:
     bpy.ops.wm.save_as_mainfile(filepath=str(out.resolve() / "spot_orbflow.blend"), compress=True)
     n_before, n_after = report["input"]["n_faces"], report["output"]["n_faces"]
     exhibits = [
-        Exhibit(before, f"input: {n_before:,} triangles", edges=0.0009, is_y_up=False),
-        Exhibit(after, f"Orbflow: {n_after:,} quads", is_y_up=False),
+        Exhibit(
+            before, f"input: {n_before:,} triangles", edges=0.0009, turn_deg=145, is_y_up=False
+        ),
+        Exhibit(after, f"Orbflow: {n_after:,} quads", turn_deg=145, is_y_up=False),
     ]
     picture([exhibits], out.resolve() / "spot.png")
     print(f"\n{table(report)}\n")

@@ -124,6 +124,7 @@ def remesh(
     threads: int = 0,
     seed: int = 0,
     scale: tuple[float, float, float] | None = None,
+    score_samples: int = 10_000,
     material_index: Int | None = None,
     reduced: tuple[Float, Int] | None = None,
     progress: Listener | None = None,

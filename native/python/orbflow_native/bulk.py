@@ -51,6 +51,7 @@ def remesh(
     threads: int = 0,
     seed: int = 0,
     scale: tuple[float, float, float] | None = None,
+    score_samples: int = 10_000,
     material_index: Int | None = None,
     reduced: tuple[Float, Int] | None = None,
     progress: Callable[[str, float], Any] | None = None,
@@ -63,6 +64,7 @@ def remesh(
     kind. `scale` is the scale of the object: faces are even in the scaled space, the result is in
     the space of the input. `reduced` is the same mesh with fewer triangles, as points (V, 3) and
     triangles (T, 3); without it, fast-simplification makes it for large meshes where installed.
+    `score_samples` is how many points of each surface the score looks at; 0 makes no score.
     `progress` is called on the calling thread, at most 20 times a second, with the name of the
     step and the share of the work that is done. The same input and settings give the same bytes.
 
@@ -81,6 +83,7 @@ def remesh(
         threads=threads,
         seed=seed,
         scale=scale,
+        score_samples=score_samples,
         material_index=material_index,
         reduced=reduced,
         progress=progress,

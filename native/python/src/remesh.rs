@@ -3,6 +3,7 @@
 use glam::DVec3;
 use numpy::{PyArray1, PyArray2};
 use orbflow_geometry::pipeline::{self, Input, Settings};
+use orbflow_geometry::score;
 use pyo3::prelude::*;
 
 use crate::arrays::{self, MeshArrays};
@@ -30,6 +31,7 @@ pub struct Remeshed {
 ///
 /// Keeps the topology, the direction of the faces and their materials. `scale` is the scale of the
 /// object: faces are even in the scaled space, the result is in the space of the input.
+/// `score_samples` is how many points of each surface the score looks at; 0 makes no score.
 /// `progress` is called on the calling thread, at most 20 times a second, with the name of the step
 /// and the share of the work that is done. The same input and settings give the same bytes.
 ///
@@ -37,7 +39,7 @@ pub struct Remeshed {
 #[pyfunction]
 #[pyo3(signature = (
     positions, loop_start, corner_vert, *, faces=2000, kind="quads", primitive=None,
-    predictor="solver", threads=0, seed=0, scale=None, material_index=None,
+    predictor="solver", threads=0, seed=0, scale=None, score_samples=10_000, material_index=None,
     reduced=None, progress=None, cancel=None,
 ))]
 #[expect(
@@ -56,6 +58,7 @@ pub fn remesh<'py>(
     threads: usize,
     seed: u64,
     scale: Option<(f64, f64, f64)>,
+    score_samples: usize,
     material_index: Option<&Bound<'py, PyAny>>,
     reduced: Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
     progress: Option<Bound<'py, PyAny>>,
@@ -82,6 +85,10 @@ pub fn remesh<'py>(
             .transpose()?,
         seed,
         threads,
+        score: (score_samples > 0).then(|| score::Settings {
+            n_samples: score_samples,
+            ..score::Settings::default()
+        }),
     };
     let predictor = report::predictor(predictor)?;
     let input = Input {
