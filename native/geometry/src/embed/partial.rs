@@ -182,3 +182,59 @@ fn ring_in(faces: &[[VertexId; 3]], vertex: VertexId) -> Vec<VertexId> {
     }
     ring
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shapes;
+
+    /// Rings name each other in the right direction, and neighbours differ in colour.
+    fn check(partial: &Partial) {
+        for (v, colour) in partial.there() {
+            let ring = partial.ring(v);
+            assert!(ring.len() >= 3, "{v}");
+            for (i, &r) in ring.iter().enumerate() {
+                let back = partial.ring(r);
+                let at = partial.place(r, v);
+                assert_eq!(
+                    back[(at + 1) % back.len()],
+                    ring[(i + ring.len() - 1) % ring.len()]
+                );
+                assert_ne!(colour, partial.colours[r], "{v} {r}");
+            }
+        }
+    }
+
+    #[test]
+    fn collapses_and_their_undoing_keep_rings_and_colours_right() {
+        let mesh = shapes::blob(1, 5);
+        let n = mesh.n_vertices();
+        let whole = Partial::whole(&mesh, VertexMap::filled(n, DVec3::Z));
+        check(&whole);
+        let mut partial = whole.clone();
+        let mut removed = Vec::new();
+        for v in mesh.vertex_ids() {
+            let ring = partial.ring(v).to_vec();
+            let Some(&into) = ring.iter().find(|&&u| partial.is_legal(v, u)) else {
+                continue;
+            };
+            let ring = partial.ring_from(v, into);
+            let vertex = v;
+            partial.collapse(Collapse {
+                vertex,
+                ring: &ring,
+            });
+            removed.push((v, ring));
+            check(&partial);
+        }
+        assert!(removed.len() > n / 2 && partial.n_there() == n - removed.len());
+        for (vertex, ring) in removed.iter().rev() {
+            let vertex = *vertex;
+            partial.insert(Collapse { vertex, ring }, DVec3::Z);
+            check(&partial);
+        }
+        for v in mesh.vertex_ids() {
+            assert_eq!(partial.ring_from(v, whole.ring(v)[0]), whole.ring(v));
+        }
+    }
+}

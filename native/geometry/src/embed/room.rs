@@ -68,3 +68,59 @@ fn clip(polygon: &[DVec2], line: DVec3, kept: &mut Vec<DVec2>) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sphere_map::is_positive;
+
+    fn ring(points: &[(f64, f64)]) -> Vec<DVec3> {
+        let lift = |&(x, y): &(f64, f64)| DVec3::new(x, y, 1.0).normalize_or(DVec3::Z);
+        points.iter().chain(points.first()).map(lift).collect()
+    }
+
+    #[test]
+    fn the_point_sees_every_edge_counter_clockwise() {
+        // The second ring is not convex: only a wedge at the first point sees all of it.
+        let rings = [
+            ring(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]),
+            ring(&[
+                (0.0, 0.0),
+                (2.0, -0.5),
+                (0.5, 0.1),
+                (2.0, 2.0),
+                (0.2, 0.3),
+                (-0.5, 1.0),
+            ]),
+            ring(&[(0.0, 0.0), (1e-6, 0.0), (1e-6, 1e-6)]),
+            ring(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1e-9)]),
+        ];
+        for ring in rings {
+            let p = point(&ring).unwrap();
+            assert!(
+                ring.windows(2).all(|e| is_positive(p, e[0], e[1])),
+                "{ring:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_ring_as_wide_as_a_face_of_the_tetrahedron_has_room() {
+        let corners = [
+            (1.0, 1.0, 1.0),
+            (1.0, -1.0, -1.0),
+            (-1.0, 1.0, -1.0),
+            (1.0, 1.0, 1.0),
+        ];
+        let ring = corners.map(|c| DVec3::from(c) / 3.0_f64.sqrt());
+        let p = point(&ring).unwrap();
+        assert!(ring.windows(2).all(|e| is_positive(p, e[0], e[1])), "{p}");
+    }
+
+    #[test]
+    fn a_ring_without_a_kernel_has_no_room() {
+        // Clockwise, it has no inside.
+        let clockwise = ring(&[(0.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, 0.0)]);
+        assert_eq!(point(&clockwise), None);
+    }
+}
