@@ -159,7 +159,7 @@ fn run_parts(
     (predictor, progress): (&dyn OffsetPredictor, &Progress<'_>),
     clock: &mut Clock,
 ) -> Result<Joined, Error> {
-    let parts = clock.step("split", || split::split(&prepared.mesh))?;
+    let parts = clock.step("split", || split::split(&prepared.mesh, progress))?;
     let shares = split::share(&parts, settings.faces, settings.kind.fewest_faces());
     let reduced = reduced.filter(|_| parts.len() == 1);
     let reduced = reduced.map(|r| r.with_positions(prepared.frame.enter(r.positions())));

@@ -7,8 +7,10 @@ use super::clock::Clock;
 use super::report::{PartReport, Reduced};
 use super::settings::{Kind, Primitive, Settings};
 use crate::embed::{Embedded, OffsetPredictor};
+use crate::hierarchy::CollapseHierarchy;
 use crate::mesh::{PolygonMesh, TriangleMesh, VertexId};
 use crate::progress::Progress;
+use crate::sphere::Adaptive;
 use crate::sphere_map::SphereMap;
 use crate::{decimate, deform, embed, measure, sphere};
 
@@ -49,20 +51,20 @@ impl PartJob<'_> {
         let stage = progress.part("decimate", 0.0, 0.2);
         let reduction = clock.step("decimate", || self.reduce(&stage))?;
         let stage = progress.part("embed", 0.2, 0.6);
-        let Embedded {
-            map,
-            report: embedding,
-        } = clock.step("embed", || {
-            embed_mesh(reduction.mesh, self.predictor, &stage)
+        let (hierarchy, embedded) = clock.step("embed", || {
+            let hierarchy = collapse(reduction.mesh, &stage)?;
+            let embedded = embed_hierarchy(&hierarchy, self.predictor, &stage)?;
+            Ok::<_, Error>((hierarchy, embedded))
         })?;
+        let embedding = embedded.report;
         let stage = progress.part("sphere", 0.6, 0.8);
-        let (primitive, sphere) = clock.step("sphere", || self.primitive(&map, &stage))?;
+        let placed = clock.step("sphere", || self.place(&hierarchy, embedded.map, &stage))?;
         let stage = progress.part("deform", 0.8, 1.0);
         let deformed = clock.step("deform", || {
             let target = deform::Target::new(full.clone());
             deform::deform(
-                &map,
-                &primitive,
+                &placed.map,
+                &placed.primitive,
                 &target,
                 &deform::Settings::default(),
                 &stage,
@@ -75,7 +77,7 @@ impl PartJob<'_> {
             reduced: reduction.reduced,
             decimate: reduction.report,
             embedding,
-            sphere,
+            sphere: placed.report,
             deform: deformed.report,
         };
         let area = measure::total_area(full);
@@ -125,11 +127,14 @@ impl PartJob<'_> {
         2 * (wanted as usize).max(LEAST_MAP_VERTICES)
     }
 
-    fn primitive(
+    /// Makes the primitive and chooses its map: adaptive triangles lie where the surface needs them
+    /// on any map; a fixed primitive is even on the sphere and needs a map that keeps areas.
+    fn place(
         &self,
-        map: &SphereMap,
+        hierarchy: &CollapseHierarchy,
+        map: SphereMap,
         progress: &Progress<'_>,
-    ) -> Result<(PolygonMesh, Option<sphere::Report>), Error> {
+    ) -> Result<Placed, Error> {
         let seed = self.settings.seed;
         let fixed = match self.settings.primitive() {
             Primitive::Adaptive => {
@@ -139,18 +144,35 @@ impl PartJob<'_> {
                     seed,
                     ..sphere::Settings::default()
                 };
-                let adaptive = sphere::adaptive(map, &settings, progress)?;
-                return Ok((adaptive.primitive, Some(adaptive.report)));
+                let Adaptive { primitive, report } = sphere::adaptive(&map, &settings, progress)?;
+                return Ok(Placed {
+                    map,
+                    primitive,
+                    report: Some(report),
+                });
             }
             Primitive::QuadSphere => sphere::quad_sphere(sphere::quad_sphere_counts(self.n_faces)),
             Primitive::Icosphere => sphere::icosphere(sphere::icosphere_frequency(self.n_faces)),
         };
+        let map = embed::even(hierarchy, &progress.part("", 0.0, 0.8))?;
         let settings = sphere::SpreadSettings {
             seed,
             ..sphere::SpreadSettings::default()
         };
-        Ok((sphere::spread(map, &fixed, &settings, progress)?, None))
+        let primitive = sphere::spread(&map, &fixed, &settings, &progress.part("", 0.8, 1.0))?;
+        Ok(Placed {
+            map,
+            primitive,
+            report: None,
+        })
     }
+}
+
+/// A primitive and the map that carries it to the surface.
+struct Placed {
+    map: SphereMap,
+    primitive: PolygonMesh,
+    report: Option<sphere::Report>,
 }
 
 /// Records the collapses of a mesh and embeds it.
@@ -159,10 +181,25 @@ pub fn embed_mesh(
     predictor: &dyn OffsetPredictor,
     progress: &Progress<'_>,
 ) -> Result<Embedded, Error> {
-    let hierarchy = decimate::collapse_to_tetrahedron(mesh, &progress.part("", 0.0, 0.2))?;
+    embed_hierarchy(&collapse(mesh, progress)?, predictor, progress)
+}
+
+/// The first fifth of an embedding's progress.
+fn collapse(mesh: TriangleMesh, progress: &Progress<'_>) -> Result<CollapseHierarchy, Error> {
+    Ok(decimate::collapse_to_tetrahedron(
+        mesh,
+        &progress.part("", 0.0, 0.2),
+    )?)
+}
+
+fn embed_hierarchy(
+    hierarchy: &CollapseHierarchy,
+    predictor: &dyn OffsetPredictor,
+    progress: &Progress<'_>,
+) -> Result<Embedded, Error> {
     let settings = embed::Settings::default();
     Ok(embed::embed(
-        &hierarchy,
+        hierarchy,
         predictor,
         &settings,
         &progress.part("", 0.2, 1.0),

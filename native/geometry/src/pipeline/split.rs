@@ -7,20 +7,23 @@
 use super::Error;
 use crate::measure;
 use crate::mesh::{FaceId, Id, TriangleMesh, VertexId};
+use crate::progress::Progress;
 
 /// The components of a mesh, closed and of genus 0, in the order of their first faces.
-pub fn split(whole: &TriangleMesh) -> Result<Vec<TriangleMesh>, Error> {
+pub fn split(whole: &TriangleMesh, progress: &Progress<'_>) -> Result<Vec<TriangleMesh>, Error> {
     refuse_borders(whole)?;
+    progress.check()?;
     let (component, n) = whole.face_components();
     let mut faces: Vec<Vec<FaceId>> = vec![Vec::new(); n];
     for face in whole.face_ids() {
         faces[component[face.index()] as usize].push(face);
     }
     let mut local = vec![VertexId(u32::MAX); whole.n_vertices()];
-    let parts: Vec<_> = faces
-        .iter()
-        .map(|f| take_part(whole, f, &mut local))
-        .collect();
+    let mut parts = Vec::with_capacity(n);
+    for of_part in &faces {
+        progress.check()?;
+        parts.push(take_part(whole, of_part, &mut local));
+    }
     for (index, part) in parts.iter().enumerate() {
         let genus = (2 - part.euler_number()) / 2;
         if genus != 0 {
@@ -116,7 +119,7 @@ mod tests {
     #[test]
     fn one_closed_part_is_split_into_itself() {
         let mesh = shapes::blob(3, 4);
-        let parts = split(&mesh).unwrap();
+        let parts = split(&mesh, &Progress::none()).unwrap();
         assert_eq!(parts.len(), 1);
         assert_eq!(parts[0], mesh);
     }
@@ -124,7 +127,7 @@ mod tests {
     #[test]
     fn components_keep_their_faces_in_order() {
         let whole = joined(&[shapes::cuboid(2), shapes::sphere(3)]);
-        let parts = split(&whole).unwrap();
+        let parts = split(&whole, &Progress::none()).unwrap();
         assert_eq!(
             parts.iter().map(TriangleMesh::n_faces).collect::<Vec<_>>(),
             [48, 108]
@@ -142,7 +145,7 @@ mod tests {
         let mut faces = shapes::sphere(3).faces().to_vec();
         faces.pop();
         let mesh = TriangleMesh::new(shapes::sphere(3).positions().to_vec(), faces).unwrap();
-        let message = split(&mesh).unwrap_err().to_string();
+        let message = split(&mesh, &Progress::none()).unwrap_err().to_string();
         assert!(
             message.starts_with("1 border loop, 3 border edges: "),
             "{message}"

@@ -67,7 +67,7 @@ fn embed_parts(
     let mut clock = Clock::default();
     let stage = progress.part("clean", 0.0, 0.02);
     let prepared = clock.step("clean", || Prepared::new(mesh, &stage))?;
-    let parts = clock.step("split", || split(&prepared.mesh))?;
+    let parts = clock.step("split", || split(&prepared.mesh, progress))?;
     let total = prepared.mesh.n_faces();
     let mut done = 0;
     let mut maps = Vec::with_capacity(parts.len());
