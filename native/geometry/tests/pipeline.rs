@@ -43,7 +43,7 @@ fn beside(a: &PolygonMesh, b: &PolygonMesh) -> PolygonMesh {
         .faces()
         .map(|f| f.iter().map(|v| v.0 + first).collect::<Vec<_>>());
     let faces: Vec<_> = of_a.chain(of_b).collect();
-    PolygonMesh::from_faces(positions.collect(), &faces).unwrap()
+    PolygonMesh::from_faces(positions.collect(), &faces).expect("two meshes make one")
 }
 
 #[test]
