@@ -73,6 +73,19 @@ impl Edges {
         lonely
     }
 
+    /// The other triangle at each side of each triangle, where edges have at most two.
+    pub(super) fn neighbours(&self) -> impl Iterator<Item = [Option<FaceId>; 3]> {
+        let other = |h: usize| {
+            let edge = self.edge[h] as usize;
+            let [from, to] = [self.starts[edge], self.starts[edge + 1]];
+            let run = &self.halfedges[from as usize..to as usize];
+            run.iter()
+                .find(|other| other.index() != h)
+                .map(|h| h.face())
+        };
+        (0..self.edge.len() / 3).map(move |f| [3 * f, 3 * f + 1, 3 * f + 2].map(other))
+    }
+
     /// The other halfedge at the edge of each halfedge, where edges have at most two.
     pub(super) fn into_twins(self) -> Twins {
         let mut twins = vec![NONE; self.halfedges.len()];

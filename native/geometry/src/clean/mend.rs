@@ -35,6 +35,7 @@ pub(super) fn mend(
     }
     report.n_flat_dropped = drop_flat_fins(&mut triangulated, &mut edges);
     check_edges(&edges, &triangulated)?;
+    report.n_doubled = drop_doubled(&mut triangulated, &mut edges)?;
     let mut twins = edges.into_twins();
     let mut faces = triangulated.faces;
     progress.at(0.85)?;
@@ -72,6 +73,23 @@ fn drop_flat_fins(triangulated: &mut Triangulated, edges: &mut Edges) -> usize {
         *edges = Edges::new(&triangulated.faces);
     }
     n_dropped
+}
+
+/// Drops pairs of triangles that have all three edges in common.
+fn drop_doubled(triangulated: &mut Triangulated, edges: &mut Edges) -> Result<usize, Error> {
+    let is_kept: Vec<bool> = edges
+        .neighbours()
+        .map(|[a, b, c]| a.is_none() || a != b || b != c)
+        .collect();
+    let n_dropped = is_kept.iter().filter(|is_kept| !**is_kept).count();
+    if n_dropped == is_kept.len() {
+        return Err(Error::TooFewPoints { n_points: 3 });
+    }
+    if n_dropped > 0 {
+        triangulated.keep(&is_kept);
+        *edges = Edges::new(&triangulated.faces);
+    }
+    Ok(n_dropped)
 }
 
 fn check_edges(edges: &Edges, triangulated: &Triangulated) -> Result<(), Error> {

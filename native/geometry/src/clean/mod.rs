@@ -25,7 +25,9 @@ mod weld;
 use glam::DVec3;
 use thiserror::Error;
 
-use crate::mesh::{FaceId, FaceMap, Id, PolygonMesh, TriangleMesh, TriangleMeshError, VertexId};
+use crate::mesh::{
+    FaceId, FaceMap, HalfedgeId, Id, PolygonMesh, TriangleMesh, TriangleMeshError, VertexId,
+};
 use crate::progress::{Cancelled, Progress};
 use polygons::Polygons;
 pub use report::Report;
@@ -149,7 +151,17 @@ fn already_solid(triangulated: &Triangulated, report: Report) -> Option<Cleaned>
         source,
         report,
     };
-    Some(cleaned).filter(|cleaned| cleaned.mesh.is_closed())
+    Some(cleaned).filter(|cleaned| cleaned.mesh.is_closed() && !has_doubled(&cleaned.mesh))
+}
+
+/// Whether two triangles lie back to back, with all three edges in common.
+fn has_doubled(mesh: &TriangleMesh) -> bool {
+    mesh.face_ids().any(|face| {
+        let h = mesh.halfedge(face);
+        let neighbour = |h| mesh.twin(h).map(HalfedgeId::face);
+        let first = neighbour(h);
+        first.is_some() && first == neighbour(h.next()) && first == neighbour(h.prev())
+    })
 }
 
 /// Refuses meshes whose faces are all points or lines, and those of fewer than four points.

@@ -17,6 +17,8 @@ pub struct Report {
     pub n_duplicates: usize,
     /// Triangles without area that were dropped; others close the surface and stay.
     pub n_flat_dropped: usize,
+    /// Triangles dropped because two of them lay back to back and enclosed nothing.
+    pub n_doubled: usize,
     /// Triangles turned to agree with their neighbours.
     pub n_reoriented: usize,
     /// Vertices added where several fans of faces met at one.
@@ -56,6 +58,11 @@ impl Report {
                 self.n_flat_dropped,
                 "triangle without area dropped",
                 "triangles without area dropped",
+            ),
+            (
+                self.n_doubled,
+                "triangle back to back with another dropped",
+                "triangles back to back dropped",
             ),
             (self.n_reoriented, "face re-oriented", "faces re-oriented"),
             (

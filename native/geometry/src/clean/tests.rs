@@ -129,6 +129,19 @@ fn flat_fins_and_degenerate_faces_are_dropped() {
 }
 
 #[test]
+fn triangles_back_to_back_enclose_nothing_and_are_dropped() {
+    let mut positions = cube_points();
+    positions.extend([3.0, 4.0, 5.0].map(|x| DVec3::new(x, x * x, 0.0)));
+    let mut faces = cube_quads();
+    faces.extend([vec![8, 9, 10], vec![10, 9, 8]]);
+    let result = cleaned(positions.clone(), &faces).unwrap();
+    assert_closed(&result, 2);
+    assert_eq!(result.report.n_doubled, 2);
+    let doubled = [vec![8, 9, 10], vec![10, 9, 8], vec![0, 1, 2], vec![0, 2, 1]];
+    assert!(message(positions, &doubled).ends_with("at least 4 are needed"));
+}
+
+#[test]
 fn an_edge_of_three_faces_is_named() {
     let mut positions = cube_points();
     positions.push(-DVec3::ONE);
