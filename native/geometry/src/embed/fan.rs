@@ -95,38 +95,12 @@ impl Fan<'_> {
             DVec3::new(u.dot(x), u.dot(y), u.dot(p))
         };
         let mut sum = Derivatives::default();
-        let mut radial = 0.0;
         let mut u = local(self.ring[0]);
-        let mut uu = u.length_squared();
         for (rest, &c) in self.rests.iter().zip(&self.ring[1..]) {
             let w = local(c);
-            let ww = w.length_squared();
-            let normal = u.cross(w);
-            let inverse = 1.0 / normal.z;
-            // The gradient of det(p, b, c) is b × c = normal + p × (c − b).
-            let turn = DVec2::new(normal.x - (w.y - u.y), normal.y + (w.x - u.x));
-            let pull = -2.0 * (rest.cot_c * u + rest.cot_b * w);
-            let dirichlet = rest.cot_c * uu + rest.cot_b * ww + rest.cot_p * u.distance_squared(w);
-            let barrier = rest.square * inverse * inverse;
-            let slope = 2.0 * barrier * inverse;
-            let even = self.evenness;
-            sum.energy += dirichlet * (1.0 + barrier) + even * normal.z * (1.0 + barrier);
-            let press = dirichlet * slope - even * (1.0 - barrier);
-            sum.gradient += pull.truncate() * (1.0 + barrier) - turn * press;
-            radial += pull.z * (1.0 + barrier) - press * normal.z;
-            let bend = (3.0 * dirichlet * inverse + even) * slope;
-            let stiff = 2.0 * (rest.cot_b + rest.cot_c) * (1.0 + barrier);
-            let mixed = pull.x * turn.y + pull.y * turn.x;
-            sum.hessian[0] += stiff + turn.x * (bend * turn.x - 2.0 * slope * pull.x);
-            sum.hessian[1] += bend * turn.x * turn.y - slope * mixed;
-            sum.hessian[2] += stiff + turn.y * (bend * turn.y - 2.0 * slope * pull.y);
-            sum.radius_squared += uu;
+            sum.add(rest, u, w, self.evenness);
             u = w;
-            uu = ww;
         }
-        // Along a great circle the second derivative loses the radial part of the gradient.
-        sum.hessian[0] -= radial;
-        sum.hessian[2] -= radial;
         Derivatives {
             energy: 0.5 * sum.energy,
             gradient: 0.5 * sum.gradient,
@@ -165,6 +139,32 @@ impl Fan<'_> {
 }
 
 impl Derivatives {
+    /// Adds twice the energy of a triangle (p, p + u, p + w), given in the frame of p.
+    #[inline]
+    fn add(&mut self, rest: &Rest, u: DVec3, w: DVec3, even: f64) {
+        let [uu, ww] = [u.length_squared(), w.length_squared()];
+        let normal = u.cross(w);
+        let inverse = 1.0 / normal.z;
+        // The gradient of det(p, b, c) is b × c = normal + p × (c − b).
+        let turn = DVec2::new(normal.x - (w.y - u.y), normal.y + (w.x - u.x));
+        let pull = -2.0 * (rest.cot_c * u + rest.cot_b * w);
+        let dirichlet = rest.cot_c * uu + rest.cot_b * ww + rest.cot_p * u.distance_squared(w);
+        let barrier = rest.square * inverse * inverse;
+        let slope = 2.0 * barrier * inverse;
+        self.energy += (dirichlet + even * normal.z) * (1.0 + barrier);
+        let press = dirichlet * slope - even * (1.0 - barrier);
+        self.gradient += pull.truncate() * (1.0 + barrier) - turn * press;
+        let bend = (3.0 * dirichlet * inverse + even) * slope;
+        // Along a great circle the second derivative loses the radial part of the gradient.
+        let radial = pull.z * (1.0 + barrier) - press * normal.z;
+        let stiff = 2.0 * (rest.cot_b + rest.cot_c) * (1.0 + barrier) - radial;
+        let mixed = pull.x * turn.y + pull.y * turn.x;
+        self.hessian[0] += stiff + turn.x * (bend * turn.x - 2.0 * slope * pull.x);
+        self.hessian[1] += bend * turn.x * turn.y - slope * mixed;
+        self.hessian[2] += stiff + turn.y * (bend * turn.y - 2.0 * slope * pull.y);
+        self.radius_squared += uu;
+    }
+
     /// The Newton step, with the Hessian shifted to positive definite, no longer than the radius.
     fn step(&self) -> DVec2 {
         let [xx, xy, yy] = self.hessian;
@@ -225,43 +225,39 @@ mod tests {
                 evenness,
             };
             let (x, y) = p.any_orthonormal_pair();
-            let at = |s: f64, t: f64| {
-                // Along great circles, where second derivatives are those of the sphere.
-                let step = x * s + y * t;
-                let angle = step.length().max(f64::MIN_POSITIVE);
-                fan.energy(p * angle.cos() + step / angle * angle.sin())
-            };
             let d = fan.derivatives(p, (x, y));
-            let h = 1e-5;
-            let gradient = [at(h, 0.0) - at(-h, 0.0), at(0.0, h) - at(0.0, -h)];
-            let size = d.gradient.length() + d.energy;
-            assert!(
-                (gradient[0] / (2.0 * h) - d.gradient.x).abs() < 1e-6 * size,
-                "{seed}"
-            );
-            assert!(
-                (gradient[1] / (2.0 * h) - d.gradient.y).abs() < 1e-6 * size,
-                "{seed}"
-            );
             assert!(
                 (fan.energy(p) - d.energy).abs() < 1e-12 * d.energy,
                 "{seed}"
             );
-            let h = 1e-4;
-            let middle = 2.0 * at(0.0, 0.0);
-            let hessian = [
-                at(h, 0.0) + at(-h, 0.0) - middle,
-                (at(h, h) - at(h, -h) - at(-h, h) + at(-h, -h)) / 4.0,
-                at(0.0, h) + at(0.0, -h) - middle,
-            ];
+            // Along great circles, where second derivatives are those of the sphere.
+            let at = |s: f64, t: f64| {
+                let step = x * s + y * t;
+                let angle = step.length().max(f64::MIN_POSITIVE);
+                fan.energy(p * angle.cos() + step / angle * angle.sin())
+            };
+            let size = d.gradient.length() + d.energy;
+            let error = (d.gradient - differences(&at, 1e-5)).length() / size;
+            assert!(error < 1e-6, "{seed}: {error}");
             let size = d.hessian.iter().fold(0.0_f64, |m, e| m.max(e.abs()));
-            for (found, wanted) in hessian.iter().zip(d.hessian) {
-                assert!(
-                    (found / (h * h) - wanted).abs() < 1e-3 * size,
-                    "{seed}: {wanted}"
-                );
+            for (found, wanted) in second_differences(&at, 1e-4).iter().zip(d.hessian) {
+                assert!((found - wanted).abs() < 1e-3 * size, "{seed}: {wanted}");
             }
         }
+    }
+
+    fn differences(at: &impl Fn(f64, f64) -> f64, h: f64) -> DVec2 {
+        DVec2::new(at(h, 0.0) - at(-h, 0.0), at(0.0, h) - at(0.0, -h)) / (2.0 * h)
+    }
+
+    fn second_differences(at: &impl Fn(f64, f64) -> f64, h: f64) -> [f64; 3] {
+        let middle = 2.0 * at(0.0, 0.0);
+        let entries = [
+            at(h, 0.0) + at(-h, 0.0) - middle,
+            (at(h, h) - at(h, -h) - at(-h, h) + at(-h, -h)) / 4.0,
+            at(0.0, h) + at(0.0, -h) - middle,
+        ];
+        entries.map(|entry| entry / (h * h))
     }
 
     #[test]

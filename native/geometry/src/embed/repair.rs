@@ -110,6 +110,7 @@ impl Clearing {
             let mut next = suspects.clone();
             let mut made_progress = false;
             for &v in &suspects {
+                progress.check()?;
                 let badness = self.badness(v);
                 if badness == 0 || self.partial.ring(v).is_empty() {
                     continue;
