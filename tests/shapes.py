@@ -17,35 +17,6 @@ def ball(rows: int = 40, columns: int = 60) -> Arrays:
     return points.astype(np.float32), *faces_of(_ball_triangles(rows, columns))
 
 
-def ball_of_quads(rows: int = 20, columns: int = 30) -> Arrays:
-    """The same ball with quads between its poles, whose fans stay triangles."""
-    positions, _, corners = ball(rows, columns)
-    triangles = corners.reshape(-1, 3)
-    strips = triangles[columns:-columns].reshape(rows - 2, 2, columns, 3)
-    quads = np.concatenate([strips[:, 0], strips[:, 1, :, 2:]], -1).reshape(-1, 4)
-    fans = np.concatenate([triangles[:columns], triangles[-columns:]])
-    starts = np.concatenate(
-        [4 * np.arange(len(quads)), 4 * len(quads) + 3 * np.arange(len(fans))]
-    ).astype(np.int32)
-    return positions, starts, np.concatenate([quads.ravel(), fans.ravel()]).astype(np.int32)
-
-
-def box(n: int, sides: tuple[float, float, float] = (1, 2, 3)) -> Arrays:
-    """A box of 6 n² quads: sharp edges, eight irregular vertices."""
-    numbers: dict[tuple[int, ...], int] = {}
-    corners = []
-    for axis in range(3):
-        for end in (0, n):
-            for i, j in np.ndindex(n, n):
-                ring = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
-                for u, v in ring if end else ring[::-1]:
-                    place = tuple(np.roll((end, u, v), axis).tolist())
-                    corners.append(numbers.setdefault(place, len(numbers)))
-    positions = np.array(list(numbers), np.float32) * np.array(sides, np.float32) / n
-    starts = np.arange(0, len(corners), 4, dtype=np.int32)
-    return positions, starts, np.array(corners, np.int32)
-
-
 def faces_of(triangles: NDArray[np.int32]) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     """Triangles as starts and corners."""
     starts = np.arange(0, 3 * len(triangles), 3, dtype=np.int32)

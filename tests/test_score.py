@@ -1,10 +1,9 @@
-"""The score is the one of `shared/tools/quality`.
+"""The score: the same figures as the independent tool's, recorded and live."""
 
-`reference/score.json` holds what that tool says of a few meshes. With that folder beside the
-checkout, `python tests/test_score.py` writes the file anew, and a test sees that it is the same.
-"""
-
+import importlib.util
 import json
+import os
+import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -12,65 +11,92 @@ from typing import Any
 import numpy as np
 import orbflow_native
 import pytest
-from shapes import Arrays, ball, ball_of_quads, box
+from shapes import Arrays, ball
 
 ROOT = Path(__file__).resolve().parent.parent
-REFERENCE = ROOT / "tests" / "reference" / "score.json"
+PAIRS = ROOT / "native" / "geometry" / "tests" / "score"
+RECORDED = json.loads((PAIRS / "figures.json").read_text())
 TOOLS = ROOT.parent / "shared" / "tools"
-CASES: dict[str, tuple[Arrays, Arrays]] = {
-    "ball of quads": (ball(40, 60), ball_of_quads(20, 30)),
-    "ball of triangles": (ball(40, 60), ball(21, 32)),
-    "box": (box(16), box(9)),
+HAS_TOOL = (TOOLS / "quality").is_dir() and all(
+    importlib.util.find_spec(name) for name in ("scipy", "igl", "fast_simplification")
+)
+# Figures from samples, which the tools take at different points: relative and absolute tolerance.
+SAMPLED = {
+    "chamfer_pct": (0.01, 0),
+    "chamfer_at_target_pct": (0.01, 0),
+    "p95_pct": (0.02, 0),
+    "hausdorff_pct": (0.1, 0),
+    "normal_consistency": (0, 0.005),
+    "f1_at_0.5_pct": (0, 1),
+    "f1_at_1_pct": (0, 1),
 }
-TARGET = 600
-# Means over 100,000 random samples differ by about a percent, their largest by more.
-LOOSE = {"hausdorff_pct": 0.3, "p95_pct": 0.05, "chamfer_pct": 0.03, "chamfer_at_target_pct": 0.03}
-TIGHT = 0.01
 
 
-def by_the_tool(given: Arrays, made: Arrays) -> dict[str, Any]:
-    sys.path.insert(0, str(TOOLS))
-    import quality  # pyright: ignore[reportMissingImports]
-
-    def mesh(arrays: Arrays) -> Any:  # noqa: ANN401 - the tool's own type
-        positions, starts, corners = arrays
-        faces = [face.tolist() for face in np.split(corners, starts[1:])]
-        return quality.PolyMesh.from_faces(positions.astype(np.float64), faces)
-
-    return quality.measure(quality.Reference(mesh(given)), mesh(made), TARGET)
+def read_obj(path: Path) -> Arrays:
+    words = [line.split() for line in path.read_text().splitlines()]
+    points = np.array([w[1:] for w in words if w[0] == "v"], np.float32)
+    faces = [w[1:] for w in words if w[0] == "f"]
+    starts = np.cumsum([0, *map(len, faces[:-1])]).astype(np.int32)
+    corners = np.array([int(i) - 1 for face in faces for i in face], np.int32)
+    return points, starts, corners
 
 
-def agrees(name: str, ours: Any, theirs: Any) -> bool:  # noqa: ANN401 - numbers, flags or None
-    if theirs is None or isinstance(theirs, bool) or ours is None:
-        return ours == theirs
-    tolerance = LOOSE.get(name, TIGHT)
-    return ours == pytest.approx(theirs, rel=tolerance, abs=1e-4)
+def pair(name: str) -> tuple[Path, Path]:
+    return PAIRS / f"{name}_input.obj", PAIRS / f"{name}_output.obj"
 
 
-@pytest.mark.parametrize("case", CASES)
-def test_every_figure_agrees_with_the_tools(case: str) -> None:
-    theirs = json.loads(REFERENCE.read_text())[case]
-    ours = orbflow_native.score(*CASES[case], target=TARGET)
-    names = ours.keys() & theirs.keys()
-    assert len(names) >= 30
-    wrong = {
-        name: (ours[name], theirs[name])
-        for name in names
-        if not agrees(name, ours[name], theirs[name])
-    }
-    assert not wrong
+def score(name: str) -> dict[str, Any]:
+    source, output = map(read_obj, pair(name))
+    return orbflow_native.score(source, output, target=RECORDED[name]["target"])
 
 
-@pytest.mark.skipif(not TOOLS.is_dir(), reason="shared/tools is not beside this checkout")
-@pytest.mark.parametrize("case", CASES)
-def test_the_recorded_figures_are_the_tools(case: str) -> None:
-    recorded = json.loads(REFERENCE.read_text())[case]
-    now = by_the_tool(*CASES[case])
-    assert now.keys() == recorded.keys()
-    assert all(agrees(name, now[name], recorded[name]) for name in now)
+def assert_agrees(found: dict[str, Any], wanted: dict[str, Any]) -> None:
+    assert not wanted.keys() - found.keys()
+    for figure, value in found.items():
+        relative, absolute = SAMPLED.get(figure, (1e-9, 1e-9))
+        expected = wanted.get(figure)
+        if isinstance(expected, int | float) and not isinstance(expected, bool):
+            expected = pytest.approx(expected, rel=relative, abs=absolute)
+        assert value == expected, figure
 
 
-if __name__ == "__main__":
-    figures = {case: by_the_tool(*meshes) for case, meshes in CASES.items()}
-    REFERENCE.parent.mkdir(exist_ok=True)
-    REFERENCE.write_text(json.dumps(figures, indent=1) + "\n")
+@pytest.mark.parametrize("name", RECORDED)
+def test_every_figure_agrees_with_the_recorded_one(name: str) -> None:
+    wanted = {key: value for key, value in RECORDED[name].items() if key != "target"}
+    assert_agrees(score(name), wanted)
+
+
+@pytest.mark.skipif(not HAS_TOOL, reason="the tool `quality` is not beside this checkout")
+@pytest.mark.parametrize("name", ["01_lumpy", "05_broken"])
+def test_every_figure_agrees_with_the_tool_itself(name: str) -> None:
+    options = ["--json", "--target", str(RECORDED[name]["target"])]
+    command = [sys.executable, "-m", "quality", *map(str, pair(name)), *options]
+    environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}
+    done = subprocess.run(command, cwd=TOOLS, env=environment, check=True, capture_output=True)
+    wanted = json.loads(done.stdout)
+    assert_agrees(score(name), {k: v for k, v in wanted.items() if k not in ("input", "output")})
+
+
+def test_a_mesh_is_as_good_as_itself() -> None:
+    found = orbflow_native.score(ball(), ball(), n_samples=2000)
+    assert found["same_topology"]
+    assert found["chamfer_pct"] < 1e-5
+    assert found["count_error_pct"] is None
+
+
+def test_the_number_of_samples_and_the_seed_are_heard() -> None:
+    source, output = map(read_obj, pair("01_lumpy"))
+    chamfers = [
+        orbflow_native.score(source, output, n_samples=n, seed=seed)["chamfer_pct"]
+        for n, seed in ((500, 0), (500, 1), (501, 0), (500, 0))
+    ]
+    assert len(set(chamfers)) == 3
+    assert chamfers == pytest.approx([chamfers[0]] * 4, rel=0.2)
+
+
+def test_what_cannot_be_scored_is_said() -> None:
+    flat = (np.zeros((3, 3), np.float32), np.zeros(1, np.int32), np.arange(3, dtype=np.int32))
+    with pytest.raises(orbflow_native.InputError, match="the output has no face with an area"):
+        orbflow_native.score(ball(), flat)
+    with pytest.raises(orbflow_native.InputError, match="0 samples"):
+        orbflow_native.score(ball(), ball(), n_samples=0)

@@ -20,7 +20,7 @@ pub use triangle::closest_on_triangle;
 /// A tree of boxes over triangles, to find the closest of them.
 ///
 /// Degenerate triangles are allowed: a point or a segment is a triangle too. Coordinates must be
-/// finite; between 1e-70 and 1e70 the fourth powers of lengths, squared areas, neither vanish nor overflow.
+/// finite, and between 1e-70 and 1e70 in size, so that squared areas neither vanish nor overflow.
 #[derive(Clone, Debug)]
 pub struct Bvh {
     nodes: Vec<Node>,
