@@ -124,7 +124,7 @@ def _quads(rows: list[Row]) -> list[Bar]:
         ("instant_meshes_s", "Instant Meshes", 4),
         ("quadriflow_s", "QuadriFlow", 0.6),
     ):
-        ratios = [{"ratio": r["cpu_s"] / r[peer]} for r in ours if r.get(peer) and r["ok"]]
+        ratios = [{"ratio": r["run_s"] / r[peer]} for r in ours if r.get(peer) and r["ok"]]
         if ratios:
             ratio = median(ratios, "ratio")
             line = (

@@ -85,10 +85,9 @@ def median(rows: Sequence[Row], key: str) -> float:
     return statistics.median(values) if values else float("nan")
 
 
-def cpu_of(report: Row, *names: str) -> float:
-    """CPU seconds of the named steps of a report; of all of them when none is named."""
-    steps = report.get("steps", [])
-    return sum(step["cpu_ms"] for step in steps if not names or step["name"] in names) / 1000
+def cpu_of(report: Row, name: str) -> float:
+    """CPU seconds of one step of a report."""
+    return sum(step["cpu_ms"] for step in report["steps"] if step["name"] == name) / 1000
 
 
 def failure(name: str, done: Run, command: str) -> Row:

@@ -70,7 +70,7 @@ def quads(bench: Bench) -> list[Row]:
                 row[f"{peer}_same_topology"] = figures["same_topology"]
         rows.append(row)
         _say(
-            row, "faces", "chamfer_pct", "f1_at_1_pct", "cpu_s", "instant_meshes_s", "quadriflow_s"
+            row, "faces", "chamfer_pct", "f1_at_1_pct", "run_s", "instant_meshes_s", "quadriflow_s"
         )
     return rows
 
@@ -102,12 +102,13 @@ def _remeshed(bench: Bench, mesh: Listed, kind: str, n_faces: int, n_quads: int)
 
 
 def _cost(done: Run, report: Row) -> Row:
+    """The cost of a run; `run_s` leaves out the scoring, which is no part of making a mesh."""
     return {
         "cpu_s": done.cpu_s,
+        "run_s": done.cpu_s - cpu_of(report, "score"),
         "wall_s": done.wall_s,
         "peak_mb": done.peak_mb,
         "steps_s": {step["name"]: step["cpu_ms"] / 1000 for step in report["steps"]},
-        "sum_of_steps_s": cpu_of(report),
     }
 
 

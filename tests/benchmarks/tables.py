@@ -17,7 +17,7 @@ TRIANGLES = (
     ("edge_cv", "edge CV", ".3f"),
     ("triangle_angle_mean_min", "mean min angle", ".1f"),
     ("self_intersecting_pct", "crossing %", ".3f"),
-    ("cpu_s", "CPU s", ".2f"),
+    ("run_s", "CPU s", ".2f"),
     ("isotropic_cpu_s", "isotropic's", ".2f"),
 )
 QUADS = (
@@ -37,7 +37,7 @@ QUADS = (
 )
 WHOLE = (
     ("input_triangles", "input triangles", "d"),
-    ("cpu_s", "Orbflow, whole process, CPU s", ".2f"),
+    ("run_s", "Orbflow, CPU s", ".2f"),
     ("instant_meshes_s", "Instant Meshes, algorithm alone", ".2f"),
     ("quadriflow_s", "QuadriFlow, algorithm alone", ".2f"),
     ("peak_mb", "our peak MB", ".0f"),

@@ -1,6 +1,8 @@
 //! Closed meshes for tests, chosen by property: round, bumpy, with corners, long, with limbs.
 #![allow(dead_code, missing_docs)] // Every test file uses a part of them.
 
+pub mod edits;
+
 use glam::{DMat3, DVec3};
 use orbflow_geometry::mesh::{PolygonMesh, TriangleMesh, VertexId};
 use orbflow_geometry::random::Random;

@@ -121,7 +121,7 @@ pub fn sized(
         }
         relax::smooth(&mut net, density, &mut report, &part)?;
     }
-    report.n_flips += relax::flip_to_delaunay(&mut net, progress)?;
+    report.n_flips += relax::flip_to_delaunay(&mut net, &progress.part("", 1.0, 1.0))?;
     let (faces, sphere) = net.into_parts();
     let primitive = PolygonMesh::from_faces(sphere, &faces).expect("a net has valid faces");
     debug_assert_eq!(check_cover(&primitive, primitive.positions()), Ok(()));
