@@ -14,6 +14,7 @@
 //!
 //! Not done here: choosing the primitive (`sphere`), and proving that faces do not cross in space.
 
+mod cover;
 mod features;
 mod flips;
 mod project;
@@ -33,29 +34,34 @@ use thiserror::Error;
 use crate::measure::vertex_normals;
 use crate::mesh::{FaceId, PolygonMesh};
 use crate::progress::{Cancelled, Progress};
-use crate::sparse::NotPositiveDefinite;
 use crate::sphere_map::{NotACover, SphereMap, check_cover};
+use cover::Cover;
 use sheet::Sheet;
+pub use straddle::Anchor;
 pub use target::Target;
 
 /// What to do, and how much of it.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {
-    /// How often every vertex slides. Fewer leave uneven faces, more cost time for little.
+    /// How often every vertex of a mesh of triangles slides. Fewer leave uneven faces, more cost
+    /// time for little.
     pub n_relaxations: usize,
+    /// The same for a primitive with quads, which cannot flip its way out.
+    pub n_quad_relaxations: usize,
     /// How often the faces are fitted to the surface by least squares.
     pub n_straddles: usize,
-    /// How strongly vertices are held to the surface while faces are fitted.
-    pub anchor: f64,
+    /// How strongly vertices are held where they are while faces are fitted.
+    pub anchor: Anchor,
 }
 
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            n_relaxations: 15,
+            n_relaxations: 4,
+            n_quad_relaxations: 0,
             n_straddles: 2,
-            anchor: 0.1,
+            anchor: Anchor::default(),
         }
     }
 }
@@ -100,9 +106,6 @@ pub enum Error {
         /// How many corners it has.
         n_corners: usize,
     },
-    /// The least squares fit failed: numbers out of range.
-    #[error("faces cannot be fitted to the surface: {0}")]
-    Fit(#[from] NotPositiveDefinite),
     /// The user asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -126,18 +129,34 @@ pub fn deform(
     check_primitive(primitive)?;
     let mut report = Report::default();
     let mut sheet = Sheet::new(map, vertex_normals(map.mesh()), primitive);
-    let n = settings.n_relaxations;
-    slide_and_flip(&mut sheet, n, &mut report, &progress.part("", 0.0, 0.5))?;
-    let [n_goals, n_pinned] = snap::snap(&mut sheet, target, &progress.part("", 0.5, 0.6))?;
+    let mut cover = (primitive.n_quads() > 0).then(|| Cover::new(map, &sheet));
+    let n = match cover {
+        None => settings.n_relaxations,
+        Some(_) => settings.n_quad_relaxations,
+    };
+    slide_and_flip(
+        &mut sheet,
+        cover.as_mut(),
+        (n, &mut report),
+        &progress.part("", 0.0, 0.5),
+    )?;
+    let part = progress.part("", 0.5, 0.6);
+    let [n_goals, n_pinned] = snap::snap(&mut sheet, cover.as_mut(), target, &part)?;
     (report.n_feature_goals, report.n_feature_vertices) = (n_goals, n_pinned);
     if n_goals > 0 {
-        slide_and_flip(&mut sheet, n / 2, &mut report, &progress.part("", 0.6, 0.7))?;
+        let part = progress.part("", 0.6, 0.7);
+        slide_and_flip(
+            &mut sheet,
+            cover.as_mut(),
+            (n.div_ceil(2), &mut report),
+            &part,
+        )?;
     }
     let reach = sheet.mean_edge();
-    report.n_unprojected = project::project(&mut sheet, target, reach);
+    report.n_unprojected = project::project(&mut sheet, target, reach, progress)?;
     for round in 0..settings.n_straddles {
         progress.at(0.7 + 0.3 * round as f64 / settings.n_straddles as f64)?;
-        straddle::straddle(&mut sheet, target, [reach, settings.anchor])?;
+        straddle::straddle(&mut sheet, target, (reach, settings.anchor), progress)?;
     }
     let (mesh, sphere) = sheet.into_mesh();
     debug_assert_eq!(check_cover(&mesh, &sphere), Ok(()));
@@ -161,14 +180,15 @@ fn check_primitive(primitive: &PolygonMesh) -> Result<(), Error> {
 /// Rounds of sliding, with flips in between while there are triangles.
 fn slide_and_flip(
     sheet: &mut Sheet,
-    n: usize,
-    report: &mut Report,
+    mut cover: Option<&mut Cover>,
+    (n, report): (usize, &mut Report),
     progress: &Progress,
 ) -> Result<(), Cancelled> {
     for round in 0..n {
         let [from, to] = [round, round + 1].map(|r| r as f64 / n as f64);
         report.n_flips += flips::flip_edges(sheet);
-        report.n_stuck = relax::relax(sheet, 1, &progress.part("", from, to))?;
+        report.n_stuck =
+            relax::relax(sheet, cover.as_deref_mut(), 1, &progress.part("", from, to))?;
     }
     report.n_flips += flips::flip_edges(sheet);
     Ok(())

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::cover::{Cover, Part};
 use super::sheet::{Face, Sheet};
 use crate::mesh::VertexId;
 use crate::progress::{Cancelled, Progress};
@@ -12,6 +13,11 @@ const GUARDED_QUALITY: f64 = 0.35;
 /// Share of the wanted size in a face's wish; the rest is the size it has. At 1 faces on stretched
 /// limbs push each other into slivers, at 0.5 sizes even out too slowly.
 const SIZE_WISH: f64 = 0.8;
+/// A face that covers this many times its own area begins to count as lying over a tip; below 1.2
+/// the roughness of the samples would count.
+const LEAST_EXCESS: f64 = 1.3;
+/// And from this many times on it does nothing but shrink there.
+const FULL_EXCESS: f64 = 2.0;
 
 /// Moves every vertex that is not pinned `n_rounds` times to where its faces would be regular polygons of equal size.
 ///
@@ -20,19 +26,27 @@ const SIZE_WISH: f64 = 0.8;
 /// Moves that fold the sphere or spoil a face are halved once, then refused. Returns how many were.
 pub(super) fn relax(
     sheet: &mut Sheet,
+    mut cover: Option<&mut Cover>,
     n_rounds: usize,
     progress: &Progress,
 ) -> Result<usize, Cancelled> {
     let mut n_refused = 0;
     for round in 0..n_rounds {
         progress.at(round as f64 / n_rounds as f64)?;
+        if let Some(cover) = &mut cover {
+            cover.update(sheet);
+        }
+        let cover = cover.as_deref();
         let radius = wanted_radius(sheet);
         n_refused = 0;
         for v in sheet.vertex_ids() {
+            if v.0 % 4096 == 0 {
+                progress.check()?;
+            }
             if sheet.is_pinned(v) {
                 continue;
             }
-            let step = wish(sheet, v, radius);
+            let step = wish(sheet, cover, v, radius);
             if !slide(sheet, v, step) && !slide(sheet, v, step * 0.5) {
                 n_refused += 1;
             }
@@ -67,20 +81,29 @@ fn area(sheet: &Sheet, face: &Face) -> f64 {
 }
 
 /// The way to the mean of where the faces at a vertex want it, along the surface.
-fn wish(sheet: &Sheet, vertex: VertexId, radius: [f64; 2]) -> DVec3 {
+fn wish(sheet: &Sheet, cover: Option<&Cover>, vertex: VertexId, radius: [f64; 2]) -> DVec3 {
     let here = sheet.point(vertex);
     let ring = sheet.ring(vertex);
-    let sum = ring.iter().fold(DVec3::ZERO, |sum, &face| {
-        let face = &sheet.faces()[face];
+    let sum = ring.iter().fold(DVec3::ZERO, |sum, &id| {
+        let face = &sheet.faces()[id];
         let corner = face.find(vertex).expect("a ring's faces have the vertex");
-        sum + regular_corner(sheet, face, corner, radius)
+        let part = cover.map(|cover| *cover.part(id)).unwrap_or_default();
+        sum + regular_corner(sheet, (face, corner), part, radius)
     });
     let step = sum / ring.len() as f64 - here.position;
     step - here.normal * step.dot(here.normal)
 }
 
 /// Where a corner goes when its face becomes the nearest regular polygon of about the wanted size.
-fn regular_corner(sheet: &Sheet, face: &Face, corner: usize, radius: [f64; 2]) -> DVec3 {
+///
+/// A face that covers much more than it seems to lies over a tip: it wants to shrink around the
+/// middle of what it covers, so that its corners climb the limb.
+fn regular_corner(
+    sheet: &Sheet,
+    (face, corner): (&Face, usize),
+    part: Part,
+    radius: [f64; 2],
+) -> DVec3 {
     let at = |steps| sheet.point(face.corner(corner, steps));
     let n = face.corners().len();
     let (here, next, before) = (at(0), at(1), at(n - 1));
@@ -96,6 +119,10 @@ fn regular_corner(sheet: &Sheet, face: &Face, corner: usize, radius: [f64; 2]) -
         let centre = (here.position + next.position + before.position + far) / 4.0;
         (centre, (here.position - far + turned) / 4.0, radius[1])
     };
+    let excess = part.area / area(sheet, face).max(f64::MIN_POSITIVE);
+    let hidden = ((excess - LEAST_EXCESS) / (FULL_EXCESS - LEAST_EXCESS)).clamp(0.0, 1.0);
+    let centre = centre.lerp(part.centre, hidden);
+    let wanted = wanted * (1.0 - hidden + hidden / excess.max(1.0).sqrt());
     let length = spoke.length();
     let size = SIZE_WISH * wanted + (1.0 - SIZE_WISH) * length;
     centre + spoke * (size / length.max(f64::MIN_POSITIVE))

@@ -9,6 +9,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
+use super::cover::Cover;
 use super::features::FeatureLine;
 use super::project::lift_towards;
 use super::relax::relax;
@@ -40,6 +41,7 @@ struct Goal {
 /// Pins vertices to the target's feature lines; returns how many were to be and how many are.
 pub(super) fn snap(
     sheet: &mut Sheet,
+    mut cover: Option<&mut Cover>,
     target: &Target,
     progress: &Progress,
 ) -> Result<[usize; 2], Cancelled> {
@@ -67,6 +69,7 @@ pub(super) fn snap(
         }
         relax(
             sheet,
+            cover.as_deref_mut(),
             1,
             &progress.part("", step as f64 / N_STEPS as f64, 1.0),
         )?;

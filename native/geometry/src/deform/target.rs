@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::features::{FeatureLine, feature_lines};
 use crate::measure::face_normals;
-use crate::mesh::{FaceMap, TriangleMesh, VertexId};
+use crate::mesh::{FaceId, FaceMap, TriangleMesh, VertexId};
 use crate::nearest::{Bvh, Closest};
 
 /// The full-resolution surface with a tree over its faces and their normals.
@@ -55,6 +55,11 @@ impl Target {
     pub(super) fn vertex_normal(&self, vertex: VertexId) -> DVec3 {
         let normals = self.mesh.outgoing(vertex).map(|h| self.normals[h.face()]);
         normals.sum::<DVec3>().normalize_or_zero()
+    }
+
+    /// The normal of a face.
+    pub(super) fn normal(&self, face: FaceId) -> DVec3 {
+        self.normals[face]
     }
 
     /// The closest point whose face agrees with a normal, up to a distance.
