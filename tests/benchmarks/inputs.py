@@ -83,7 +83,7 @@ def resized(points: Points, triangles: Triangles, n_triangles: int) -> tuple[Poi
         points, triangles = subdivide(points, triangles)
     if len(triangles) > n_triangles:
         out = fast_simplification.simplify(
-            points.astype(np.float32),
+            points.astype(np.float32).astype(np.float64),
             triangles.astype(np.int32),
             target_count=n_triangles,
         )

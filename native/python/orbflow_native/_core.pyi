@@ -6,9 +6,27 @@ from typing import Any, Final, TypeAlias, final
 import numpy as np
 from numpy.typing import NDArray
 
-Float: TypeAlias = NDArray[np.float32]
-Int: TypeAlias = NDArray[np.int32]
-Listener: TypeAlias = Callable[[str, float], Any]
+_Floats: TypeAlias = NDArray[np.float32]
+_Ints: TypeAlias = NDArray[np.int32]
+_Listener: TypeAlias = Callable[[str, float], Any]
+
+__all__ = [
+    "DEFAULTS",
+    "MAX_FACES",
+    "MIN_FACES",
+    "CancelToken",
+    "Cancelled",
+    "Decimated",
+    "Embedded",
+    "InputError",
+    "OrbflowError",
+    "Remeshed",
+    "__version__",
+    "decimate",
+    "embed",
+    "remesh",
+    "score",
+]
 
 __version__: Final[str]
 MIN_FACES: Final[int]
@@ -41,23 +59,23 @@ class Remeshed:
     """A new mesh and how it came about."""
 
     @property
-    def positions(self) -> Float:
+    def positions(self) -> _Floats:
         """`(V, 3) float32`: the positions of the vertices."""
 
     @property
-    def loop_start(self) -> Int:
+    def loop_start(self) -> _Ints:
         """`(F,) int32`: where the corners of each face start."""
 
     @property
-    def corner_vert(self) -> Int:
+    def corner_vert(self) -> _Ints:
         """`(L,) int32`: the vertex of each corner."""
 
     @property
-    def material_index(self) -> Int | None:
+    def material_index(self) -> _Ints | None:
         """`(F,) int32`: the material of each face; `None` when the input had none."""
 
     @property
-    def sphere(self) -> Float:
+    def sphere(self) -> _Floats:
         """`(V, 3) float32`: where each vertex lies on the unit sphere of its part."""
 
     @property
@@ -69,19 +87,19 @@ class Embedded:
     """A mesh of triangles and its map to the sphere."""
 
     @property
-    def positions(self) -> Float:
+    def positions(self) -> _Floats:
         """`(V, 3) float32`: the positions of the vertices."""
 
     @property
-    def loop_start(self) -> Int:
+    def loop_start(self) -> _Ints:
         """`(F,) int32`: where the corners of each face start."""
 
     @property
-    def corner_vert(self) -> Int:
+    def corner_vert(self) -> _Ints:
         """`(L,) int32`: the vertex of each corner."""
 
     @property
-    def sphere(self) -> Float:
+    def sphere(self) -> _Floats:
         """`(V, 3) float32`: where each vertex lies on the unit sphere of its part."""
 
     @property
@@ -93,19 +111,19 @@ class Decimated:
     """A mesh with fewer triangles."""
 
     @property
-    def positions(self) -> Float:
+    def positions(self) -> _Floats:
         """`(V, 3) float32`: the positions of the vertices."""
 
     @property
-    def loop_start(self) -> Int:
+    def loop_start(self) -> _Ints:
         """`(F,) int32`: where the corners of each face start."""
 
     @property
-    def corner_vert(self) -> Int:
+    def corner_vert(self) -> _Ints:
         """`(L,) int32`: the vertex of each corner."""
 
     @property
-    def material_index(self) -> Int | None:
+    def material_index(self) -> _Ints | None:
         """`(F,) int32`: the material of each face; `None` when the input had none."""
 
     @property
@@ -113,9 +131,9 @@ class Decimated:
         """What is told of the run."""
 
 def remesh(
-    positions: Float,
-    loop_start: Int,
-    corner_vert: Int,
+    positions: _Floats,
+    loop_start: _Ints,
+    corner_vert: _Ints,
     *,
     faces: int = 2000,
     kind: str = "quads",
@@ -125,45 +143,45 @@ def remesh(
     seed: int = 0,
     scale: tuple[float, float, float] | None = None,
     score_samples: int = 10_000,
-    material_index: Int | None = None,
-    reduced: tuple[Float, Int] | None = None,
-    progress: Listener | None = None,
+    material_index: _Ints | None = None,
+    reduced: tuple[_Floats, _Ints] | None = None,
+    progress: _Listener | None = None,
     cancel: CancelToken | None = None,
 ) -> Remeshed:
     """Rebuilds a mesh by deforming a sphere into each of its parts."""
 
 def embed(
-    positions: Float,
-    loop_start: Int,
-    corner_vert: Int,
+    positions: _Floats,
+    loop_start: _Ints,
+    corner_vert: _Ints,
     *,
     predictor: str = "solver",
     threads: int = 0,
-    progress: Listener | None = None,
+    progress: _Listener | None = None,
     cancel: CancelToken | None = None,
 ) -> Embedded:
     """Maps every vertex of a mesh to the unit sphere, at full resolution."""
 
 def decimate(
-    positions: Float,
-    loop_start: Int,
-    corner_vert: Int,
+    positions: _Floats,
+    loop_start: _Ints,
+    corner_vert: _Ints,
     *,
     faces: int = 2000,
-    material_index: Int | None = None,
-    progress: Listener | None = None,
+    material_index: _Ints | None = None,
+    progress: _Listener | None = None,
     cancel: CancelToken | None = None,
 ) -> Decimated:
     """Lowers the number of triangles of a mesh; borders and handles are kept."""
 
 def score(
-    input: tuple[Float, Int, Int],
-    output: tuple[Float, Int, Int],
+    input: tuple[_Floats, _Ints, _Ints],
+    output: tuple[_Floats, _Ints, _Ints],
     *,
     target: int | None = None,
     n_samples: int = 100_000,
     seed: int = 0,
-    progress: Listener | None = None,
+    progress: _Listener | None = None,
     cancel: CancelToken | None = None,
 ) -> dict[str, Any]:
     """Says in numbers how good `output` is as a new mesh of `input`."""

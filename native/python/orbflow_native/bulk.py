@@ -5,6 +5,8 @@ own that is ended when the user cancels. The core takes its result only when it 
 and of equal Euler number, says in the report what it did, and otherwise reduces the mesh itself.
 """
 
+from __future__ import annotations
+
 import importlib.util
 import io
 import os
@@ -12,10 +14,9 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from . import _core
 
@@ -35,14 +36,17 @@ numpy.save(answer, numpy.ascontiguousarray(reduced[1], numpy.int32))
 sys.stdout.buffer.write(answer.getvalue())
 """
 
-Float = NDArray[np.float32]
-Int = NDArray[np.int32]
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    _Floats = NDArray[np.float32]
+    _Ints = NDArray[np.int32]
 
 
 def remesh(
-    positions: Float,
-    loop_start: Int,
-    corner_vert: Int,
+    positions: _Floats,
+    loop_start: _Ints,
+    corner_vert: _Ints,
     *,
     faces: int = 2000,
     kind: str = "quads",
@@ -52,8 +56,8 @@ def remesh(
     seed: int = 0,
     scale: tuple[float, float, float] | None = None,
     score_samples: int = 10_000,
-    material_index: Int | None = None,
-    reduced: tuple[Float, Int] | None = None,
+    material_index: _Ints | None = None,
+    reduced: tuple[_Floats, _Ints] | None = None,
     progress: Callable[[str, float], Any] | None = None,
     cancel: _core.CancelToken | None = None,
 ) -> _core.Remeshed:
@@ -98,11 +102,11 @@ def is_available() -> bool:
 
 
 def reduce(
-    positions: Float,
-    loop_start: Int,
-    corner_vert: Int,
+    positions: _Floats,
+    loop_start: _Ints,
+    corner_vert: _Ints,
     cancel: _core.CancelToken | None = None,
-) -> tuple[Float, Int] | None:
+) -> tuple[_Floats, _Ints] | None:
     """A mesh of many triangles with fewer; `None` for anything else, or when it fails.
 
     Raises `Cancelled` when the token was raised.
@@ -118,7 +122,7 @@ def reduce(
     return np.load(answer), np.load(answer)
 
 
-def _is_large_and_of_triangles(positions: Float, loop_start: Int, corner_vert: Int) -> bool:
+def _is_large_and_of_triangles(positions: _Floats, loop_start: _Ints, corner_vert: _Ints) -> bool:
     arrays = (positions, loop_start, corner_vert)
     if not all(isinstance(each, np.ndarray) for each in arrays):
         return False
