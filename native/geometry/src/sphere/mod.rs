@@ -2,7 +2,8 @@
 //!
 //! Fixed ones ([`icosphere`], [`quad_sphere`]) are even on the sphere, which a map may stretch a
 //! hundredfold; [`spread`] turns them to where they lie best, and [`adaptive`] places triangles so
-//! that they are even on the surface. Every primitive covers the sphere exactly once, as [`crate::sphere_map::check_cover`] proves.
+//! that they are even on the surface. Every primitive covers the sphere exactly once, as
+//! [`crate::sphere_map::check_cover`] proves.
 
 mod adaptive;
 mod icosphere;

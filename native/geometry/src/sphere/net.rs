@@ -164,3 +164,76 @@ impl<'a> Net<'a> {
         (faces, self.sphere.into_vec())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+    use crate::shapes;
+
+    fn limbs() -> SphereMap {
+        let sphere = VertexMap::from_vec(shapes::sphere(10).positions().to_vec());
+        SphereMap::prove(shapes::limbs(3, 10), sphere).unwrap()
+    }
+
+    fn net(map: &SphereMap) -> Net<'_> {
+        let mut random = Random::new(8);
+        let mut net = Net::tetrahedron(map);
+        for _ in 0..200 {
+            let face = FaceId(random.below(map.mesh().n_faces()) as u32);
+            let weights = [0.2, 0.3, 0.5];
+            let point = map.sphere_position(SurfacePoint { face, weights });
+            let at = net.face_at(point, VertexId(2));
+            net.insert(at, SurfacePoint { face, weights });
+        }
+        net
+    }
+
+    fn is_positive_everywhere(net: &Net) -> bool {
+        let positive =
+            |f: [VertexId; 3]| is_positive(net.sphere[f[0]], net.sphere[f[1]], net.sphere[f[2]]);
+        net.triangulation.faces().all(positive)
+    }
+
+    #[test]
+    fn inserted_vertices_are_joined_by_a_delaunay_triangulation() {
+        let map = limbs();
+        let net = net(&map);
+        assert!(net.n_vertices() > 150);
+        assert_eq!(net.triangulation.n_faces(), 2 * net.n_vertices() - 4);
+        assert!(is_positive_everywhere(&net));
+        let mut edges = net.triangulation.halfedge_ids();
+        assert!(edges.all(|h| !net.is_inside_circle(h)));
+    }
+
+    #[test]
+    fn a_place_that_is_taken_is_refused() {
+        let map = limbs();
+        let mut net = net(&map);
+        let before = net.n_vertices();
+        for vertex in [0, 1, 50].map(VertexId) {
+            let face = net.face_at(net.sphere(vertex), VertexId(7));
+            assert!(!net.insert(face, net.place(vertex)));
+        }
+        assert_eq!(net.n_vertices(), before);
+    }
+
+    #[test]
+    fn no_step_and_no_flip_folds_a_triangle() {
+        let map = limbs();
+        let mut net = net(&map);
+        let mut random = Random::new(4);
+        let mut n_moved = 0;
+        for _ in 0..2000 {
+            let vertex = VertexId(random.below(net.n_vertices()) as u32);
+            let mut shift = || random.unit() - 0.5;
+            let target = net.position(vertex) + DVec3::new(shift(), shift(), shift());
+            n_moved += usize::from(net.step(vertex, target));
+            net.flip(HalfedgeId(
+                random.below(3 * net.triangulation.n_faces()) as u32
+            ));
+        }
+        assert!(n_moved > 500, "{n_moved}");
+        assert!(is_positive_everywhere(&net));
+    }
+}

@@ -81,3 +81,40 @@ fn spread_bits(x: u64) -> u64 {
     let x = (x | x << 2) & 0x3333_3333_3333_3333;
     (x | x << 1) & 0x5555_5555_5555_5555
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shapes;
+
+    #[test]
+    fn every_part_of_the_surface_gets_its_share() {
+        let sphere = VertexMap::from_vec(shapes::sphere(16).positions().to_vec());
+        let map = SphereMap::prove(shapes::cuboid(16), sphere).unwrap();
+        let density = VertexMap::filled(map.mesh().n_vertices(), 1.0);
+        let places = sample(&map, &density, 4000, &mut Random::new(1));
+        assert_eq!(places.len(), 4000);
+        // The sides of the box have areas 0.8, 0.6 and 0.48.
+        for (axis, half, area) in [(0, 0.5, 0.48), (1, 0.4, 0.6), (2, 0.3, 0.8)] {
+            let on_side = |&&at: &&SurfacePoint| map.surface_position(at)[axis] > half - 1e-9;
+            let found = places.iter().filter(on_side).count() as f64;
+            let wanted = 4000.0 * area / 3.76;
+            // Independent places would miss by 26 in the mean.
+            assert!((found - wanted).abs() < 6.0, "{axis}: {found} {wanted}");
+        }
+    }
+
+    #[test]
+    fn places_inside_a_face_have_the_centroid_of_the_face() {
+        let mut random = Random::new(2);
+        let mut sum = [0.0; 3];
+        for _ in 0..3000 {
+            let weights = inside(FaceId(0), &mut random).weights;
+            assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+            for (total, weight) in sum.iter_mut().zip(weights) {
+                *total += weight / 3000.0;
+            }
+        }
+        assert!(sum.iter().all(|w| (w - 1.0 / 3.0).abs() < 0.02), "{sum:?}");
+    }
+}
