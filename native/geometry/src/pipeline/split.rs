@@ -14,6 +14,9 @@ pub fn split(whole: &TriangleMesh, progress: &Progress<'_>) -> Result<Vec<Triang
     refuse_borders(whole)?;
     progress.check()?;
     let (component, n) = whole.face_components();
+    if n == 1 {
+        return Ok(vec![checked(whole.clone(), [1, 1])?]);
+    }
     let mut faces: Vec<Vec<FaceId>> = vec![Vec::new(); n];
     for face in whole.face_ids() {
         faces[component[face.index()] as usize].push(face);
@@ -24,17 +27,22 @@ pub fn split(whole: &TriangleMesh, progress: &Progress<'_>) -> Result<Vec<Triang
         progress.check()?;
         parts.push(take_part(whole, of_part, &mut local));
     }
-    for (index, part) in parts.iter().enumerate() {
-        let genus = (2 - part.euler_number()) / 2;
-        if genus != 0 {
-            return Err(Error::Genus {
-                genus,
-                part: index + 1,
-                n_parts: n,
-            });
-        }
+    let numbered = parts.into_iter().enumerate();
+    numbered
+        .map(|(index, part)| checked(part, [index + 1, n]))
+        .collect()
+}
+
+/// A part, if it has no handles.
+fn checked(mesh: TriangleMesh, [part, n_parts]: [usize; 2]) -> Result<TriangleMesh, Error> {
+    match (2 - mesh.euler_number()) / 2 {
+        0 => Ok(mesh),
+        genus => Err(Error::Genus {
+            genus,
+            part,
+            n_parts,
+        }),
     }
-    Ok(parts)
 }
 
 fn refuse_borders(whole: &TriangleMesh) -> Result<(), Error> {
