@@ -4,7 +4,9 @@ use std::ops::{Add, AddAssign};
 
 use glam::DVec3;
 
+use super::rounds::BATCH;
 use crate::mesh::{TriangleMesh, VertexMap};
+use crate::progress::{Cancelled, Progress};
 
 /// Garland & Heckbert's quadric `p·A p + 2 b·p + c`.
 #[derive(Clone, Copy, Default)]
@@ -84,15 +86,19 @@ impl Quadric {
 pub(super) fn vertex_quadrics(
     mesh: &TriangleMesh,
     points: &VertexMap<DVec3>,
-) -> VertexMap<Quadric> {
+    progress: &Progress,
+) -> Result<VertexMap<Quadric>, Cancelled> {
     let mut quadrics: VertexMap<Quadric> = VertexMap::filled(points.len(), Quadric::default());
-    for face in mesh.faces() {
-        let quadric = Quadric::of_triangle(face.map(|v| points[v]));
-        for &v in face {
-            quadrics[v] += quadric;
+    for batch in mesh.faces().chunks(BATCH) {
+        progress.check()?;
+        for face in batch {
+            let quadric = Quadric::of_triangle(face.map(|v| points[v]));
+            for &v in face {
+                quadrics[v] += quadric;
+            }
         }
     }
-    quadrics
+    Ok(quadrics)
 }
 
 impl Add for Quadric {

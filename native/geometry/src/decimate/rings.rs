@@ -1,6 +1,8 @@
 //! Connectivity that can be edited: the ring of neighbours of every vertex.
 
+use super::rounds::BATCH;
 use crate::mesh::{Id, TriangleMesh, VertexId, VertexMap};
+use crate::progress::{Cancelled, Progress};
 
 /// Where a ring lies in the arena, and how far it can grow there.
 #[derive(Clone, Copy, Default)]
@@ -25,7 +27,7 @@ pub(super) struct Rings {
 }
 
 impl Rings {
-    pub fn of_mesh(mesh: &TriangleMesh) -> Self {
+    pub fn of_mesh(mesh: &TriangleMesh, progress: &Progress) -> Result<Self, Cancelled> {
         let n = mesh.n_vertices();
         let mut rings = Self {
             spans: VertexMap::filled(n, Span::default()),
@@ -43,11 +45,14 @@ impl Rings {
         }
         let mut ring = Vec::new();
         for v in mesh.vertex_ids() {
+            if v.index() % BATCH == 0 {
+                progress.check()?;
+            }
             ring.clear();
             ring.extend(mesh.neighbours(v).chain(outside[v]));
             rings.place(v, &ring);
         }
-        rings
+        Ok(rings)
     }
 
     /// The neighbours of a vertex that is not virtual; none after its removal.

@@ -6,9 +6,10 @@ use super::rings::Rings;
 use crate::mesh::{VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
 
-/// Vertices per parallel task, and per look at the cancellation flag (some 10 ms of work).
+/// Vertices per parallel task.
 const TASK: usize = 256;
-const BATCH: usize = 8192;
+/// Vertices per look at the cancellation flag: some 10 ms of work.
+pub(super) const BATCH: usize = 8192;
 
 /// The best collapse of a vertex.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -46,7 +47,6 @@ pub(super) struct Rounds {
     /// The round in which the best was found (0 for bounds), and that of the last change.
     found: VertexMap<u32>,
     changed: VertexMap<u32>,
-    dirty: Vec<VertexId>,
     round: u32,
     /// The share of the vertices that a round looks at, cheapest first.
     share: f64,
@@ -57,7 +57,6 @@ impl Rounds {
         let costs: VertexMap<_> = VertexMap::filled(n_vertices, f64::INFINITY);
         Self {
             alive: costs.ids().collect(),
-            dirty: costs.ids().collect(),
             costs,
             into: VertexMap::filled(n_vertices, VertexId(0)),
             found: VertexMap::filled(n_vertices, 0),
@@ -75,9 +74,12 @@ impl Rounds {
     ) -> Result<Option<Vec<Choice>>, Cancelled> {
         self.round += 1;
         self.alive.retain(|&v| !costs.rings().of(v).is_empty());
-        let dirty = std::mem::take(&mut self.dirty);
+        // In the order of ids, which is that of memory, not in that of changes.
+        let is_dirty = |v: &VertexId| self.changed[*v] + 1 == self.round;
+        let dirty: Vec<VertexId> = self.alive.iter().copied().filter(is_dirty).collect();
         self.bound(&dirty, costs, progress)?;
         let limit = self.cost_limit();
+        progress.check()?;
         if limit == f64::INFINITY {
             return Ok(None);
         }
@@ -85,6 +87,7 @@ impl Rounds {
         let cheap: Vec<VertexId> = self.alive.iter().copied().filter(is_cheap).collect();
         let is_stale = |v: &VertexId| self.is_stale(costs.rings(), *v);
         let stale: Vec<VertexId> = cheap.iter().copied().filter(is_stale).collect();
+        progress.check()?;
         self.find(&stale, costs, progress)?;
         let choice = |vertex: VertexId| {
             let (cost, into) = (self.costs[vertex], self.into[vertex]);
@@ -165,14 +168,13 @@ impl Rounds {
 
     /// Says that the ring or the place of a vertex has changed in this round.
     pub fn mark(&mut self, vertex: VertexId) {
-        if !self.is_changed(vertex) {
-            self.changed[vertex] = self.round;
-            self.dirty.push(vertex);
-        }
+        self.changed[vertex] = self.round;
     }
 
     /// Says that what may be collapsed has changed everywhere.
     pub fn mark_all(&mut self) {
-        self.dirty.clone_from(&self.alive);
+        for &v in &self.alive {
+            self.changed[v] = self.round;
+        }
     }
 }

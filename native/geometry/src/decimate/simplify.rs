@@ -7,7 +7,7 @@ use super::frame::Frame;
 use super::merge::{Guard, Merging};
 use super::quadric::{Quadric, vertex_quadrics};
 use super::rings::Rings;
-use super::rounds::{Choice, Rounds};
+use super::rounds::{BATCH, Choice, Rounds};
 use crate::mesh::{Id, TriangleMesh, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
 
@@ -90,7 +90,7 @@ pub fn simplify(
         return Err(Error::TooFewFaces { n_faces: n_wanted });
     }
     let n_before = mesh.n_faces();
-    let mut simplifying = Simplifying::new(mesh);
+    let mut simplifying = Simplifying::new(mesh, progress)?;
     while simplifying.n_faces > n_wanted {
         let n_gone = n_before - simplifying.n_faces;
         progress.at(n_gone as f64 / (n_before - n_wanted) as f64)?;
@@ -121,23 +121,27 @@ struct Simplifying {
 }
 
 impl Simplifying {
-    fn new(mesh: &TriangleMesh) -> Self {
+    /// The start; a user who cancels waits for one of its passes over the mesh at most.
+    fn new(mesh: &TriangleMesh, progress: &Progress) -> Result<Self, Cancelled> {
         let frame = Frame::of_mesh(mesh);
         let points = frame.points(mesh);
-        let mut quadrics = vertex_quadrics(mesh, &points);
+        progress.check()?;
+        let mut quadrics = vertex_quadrics(mesh, &points, progress)?;
         for h in mesh.halfedge_ids().filter(|&h| mesh.twin(h).is_none()) {
             let triangle = [h, h.next(), h.prev()].map(|h| points[mesh.origin(h)]);
             let quadric = border_quadric(triangle);
             quadrics[mesh.origin(h)] += quadric;
             quadrics[mesh.target(h)] += quadric;
         }
+        progress.check()?;
         let merging = Merging {
-            rings: Rings::of_mesh(mesh),
+            rings: Rings::of_mesh(mesh, progress)?,
             points,
             quadrics,
             guard: Guard::Shape,
         };
-        Self {
+        progress.check()?;
+        Ok(Self {
             frame,
             merging,
             rounds: Rounds::new(mesh.n_vertices(), ROUND_SHARE),
@@ -145,7 +149,7 @@ impl Simplifying {
             round: 0,
             n_faces: mesh.n_faces(),
             n_collapses: 0,
-        }
+        })
     }
 
     /// Takes the cheapest collapses that do not touch each other; whether more could follow.
@@ -157,9 +161,12 @@ impl Simplifying {
             self.rounds.mark_all();
             return Ok(may_relax);
         };
-        for choice in choices {
-            if self.n_faces > n_wanted {
-                self.commit(choice);
+        for batch in choices.chunks(BATCH) {
+            progress.check()?;
+            for &choice in batch {
+                if self.n_faces > n_wanted {
+                    self.commit(choice);
+                }
             }
         }
         Ok(true)

@@ -6,7 +6,7 @@ use super::fan::Level;
 use super::frame::Frame;
 use super::quadric::vertex_quadrics;
 use super::rings::Rings;
-use super::rounds::{Choice, Rounds};
+use super::rounds::{BATCH, Choice, Rounds};
 use crate::hierarchy::{CollapseHierarchy, HierarchyBuilder, HierarchyError};
 use crate::mesh::{TriangleMesh, VertexId};
 use crate::progress::{Cancelled, Progress};
@@ -70,7 +70,7 @@ pub fn collapse_to_tetrahedron(
     progress: &Progress,
 ) -> Result<CollapseHierarchy, CollapseError> {
     check_topology(&mesh)?;
-    let mut collapsing = Collapsing::new(&mesh);
+    let mut collapsing = Collapsing::new(&mesh, progress)?;
     while collapsing.n_left > 4 {
         progress.at(1.0 - (collapsing.n_left - 4) as f64 / mesh.n_vertices() as f64)?;
         collapsing.round(progress)?;
@@ -111,21 +111,21 @@ struct Collapsing {
 }
 
 impl Collapsing {
-    fn new(mesh: &TriangleMesh) -> Self {
+    fn new(mesh: &TriangleMesh, progress: &Progress) -> Result<Self, Cancelled> {
         let n_left = mesh.n_vertices();
         let points = Frame::of_mesh(mesh).points(mesh);
         let level = Level {
-            rings: Rings::of_mesh(mesh),
-            quadrics: vertex_quadrics(mesh, &points),
+            rings: Rings::of_mesh(mesh, progress)?,
+            quadrics: vertex_quadrics(mesh, &points, progress)?,
             points,
             max_valence: MAX_VALENCE,
         };
-        Self {
+        Ok(Self {
             level,
             rounds: Rounds::new(n_left, ROUND_SHARE),
             n_left,
             record: HierarchyBuilder::new(),
-        }
+        })
     }
 
     /// Takes the cheapest collapses that do not touch each other.
@@ -137,9 +137,12 @@ impl Collapsing {
             self.rounds.mark_all();
             return Ok(());
         };
-        for choice in choices {
-            if self.n_left > 4 {
-                self.commit(choice);
+        for batch in choices.chunks(BATCH) {
+            progress.check()?;
+            for &choice in batch {
+                if self.n_left > 4 {
+                    self.commit(choice);
+                }
             }
         }
         self.record.end_round();
