@@ -26,7 +26,7 @@
 //!
 //! // A sphere of quads goes through the map to the surface at full resolution.
 //! let primitive = sphere::quad_sphere(sphere::quad_sphere_counts(600));
-//! let target = deform::Target::new(cleaned.mesh);
+//! let target = deform::Target::new(cleaned.mesh, &quiet)?;
 //! let settings = deform::Settings::default();
 //! let deformed = deform::deform(&embedded.map, &primitive, &target, &settings, &quiet)?;
 //! assert_eq!(deformed.mesh.n_quads(), 600);

@@ -51,9 +51,9 @@ impl Default for Anchor {
     }
 }
 
-/// A triangle's samples: the normals at their closest points and the distances to those planes.
-/// Samples without a closest point have a zero normal. Single precision is enough for directions,
-/// and there are many.
+/// A triangle's samples: the normals at their closest points and the distances to those planes,
+/// both weighted by how well the triangle agrees with the normal. Samples without a closest point
+/// weigh nothing. Single precision is enough for directions, and there are many.
 struct Samples {
     corners: [VertexId; 3],
     normals: [[f32; 3]; N_SAMPLES],
@@ -62,7 +62,7 @@ struct Samples {
 
 /// Moves vertices to the least squares fit.
 ///
-/// Pinned vertices stay, and none goes farther than `reach` or so that a face is spoiled.
+/// Pinned vertices stay, and none goes farther than half of `reach` or so that a face is spoiled.
 pub(super) fn straddle(
     sheet: &mut Sheet,
     target: &Target,
@@ -77,7 +77,7 @@ pub(super) fn straddle(
     let samples = samples.collect::<Result<Vec<_>, Cancelled>>()?;
     let steps = solve(sheet, &samples, anchor, progress)?;
     for v in sheet.vertex_ids() {
-        let wanted = sheet.position(v) + steps[v].clamp_length_max(reach);
+        let wanted = sheet.position(v) + steps[v].clamp_length_max(reach / 2.0);
         lift_towards(sheet, v, wanted, GUARDED_QUALITY);
     }
     Ok(())
@@ -114,8 +114,10 @@ fn sample(sheet: &Sheet, target: &Target, corners: [VertexId; 3], reach: f64) ->
         let x = a * u + b * v + c * w;
         if let Some(foot) = target.closest_agreeing(x, normal, reach) {
             let plane = target.normal(foot.face);
-            samples.normals[k] = plane.as_vec3().to_array();
-            samples.gaps[k] = plane.dot(foot.position - x);
+            // Where the face does not follow the surface, as over a tip, the plane says little.
+            let plane_weight = normal.dot(plane);
+            samples.normals[k] = (plane * plane_weight).as_vec3().to_array();
+            samples.gaps[k] = plane_weight * plane.dot(foot.position - x);
         }
     }
     samples

@@ -6,6 +6,7 @@ use super::features::{FeatureLine, feature_lines};
 use crate::measure::face_normals;
 use crate::mesh::{FaceId, FaceMap, TriangleMesh, VertexId};
 use crate::nearest::{Bvh, Closest};
+use crate::progress::{Cancelled, Progress};
 
 /// The full-resolution surface with a tree over its faces and their normals.
 #[derive(Clone, Debug)]
@@ -19,21 +20,35 @@ pub struct Target {
 impl Target {
     /// Prepares a surface. It must lie in the same coordinates as the sphere map's. Edges at which
     /// it turns by more than 40° count as sharp.
-    pub fn new(mesh: TriangleMesh) -> Self {
-        Self::with_crease_angle(mesh, 40f64.to_radians())
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn new(mesh: TriangleMesh, progress: &Progress) -> Result<Self, Cancelled> {
+        Self::with_crease_angle(mesh, 40f64.to_radians(), progress)
     }
 
     /// The same with another angle (radians) from which on edges count as sharp.
-    pub fn with_crease_angle(mesh: TriangleMesh, crease_angle: f64) -> Self {
-        let bvh = Bvh::of_mesh(&mesh);
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn with_crease_angle(
+        mesh: TriangleMesh,
+        crease_angle: f64,
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
+        progress.check()?;
         let normals = face_normals(&mesh);
+        progress.check()?;
         let features = feature_lines(&mesh, &normals, crease_angle);
-        Self {
+        progress.check()?;
+        let bvh = Bvh::of_mesh(&mesh);
+        progress.check()?;
+        Ok(Self {
             mesh,
             bvh,
             normals,
             features,
-        }
+        })
     }
 
     /// The surface.

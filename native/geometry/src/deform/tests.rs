@@ -16,6 +16,10 @@ fn radial_map(mesh: &TriangleMesh) -> SphereMap {
     SphereMap::prove(mesh.clone(), sphere).unwrap()
 }
 
+fn target(mesh: TriangleMesh) -> Target {
+    Target::new(mesh, &Progress::none()).unwrap()
+}
+
 fn run(map: &SphereMap, primitive: &PolygonMesh, target: &Target) -> Deformed {
     deform(
         map,
@@ -30,7 +34,7 @@ fn run(map: &SphereMap, primitive: &PolygonMesh, target: &Target) -> Deformed {
 #[test]
 fn an_icosphere_on_a_sphere_stays_on_it() {
     let ball = shapes::sphere(24);
-    let (map, target) = (radial_map(&ball), Target::new(ball));
+    let (map, target) = (radial_map(&ball), target(ball));
     let result = run(&map, &icosphere(6), &target);
     for &p in result.mesh.positions() {
         assert!((p.length() - 1.0).abs() < 0.02, "{}", p.length());
@@ -44,7 +48,7 @@ fn every_result_is_a_closed_cover_with_the_counts_of_the_primitive() {
         if name == "limbs" {
             continue;
         }
-        let (map, target) = (radial_map(&mesh), Target::new(mesh));
+        let (map, target) = (radial_map(&mesh), target(mesh));
         for primitive in [icosphere(6), quad_sphere([6, 7, 8])] {
             let result = run(&map, &primitive, &target);
             assert_eq!(check_cover(&result.mesh, &result.sphere), Ok(()), "{name}");
@@ -62,7 +66,7 @@ fn a_scaled_input_gives_the_scaled_result() {
         let positions = mesh.positions().iter().map(|&p| p * scale).collect();
         let mesh = mesh.with_positions(positions);
         let map = radial_map(&mesh);
-        run(&map, &primitive, &Target::new(mesh))
+        run(&map, &primitive, &target(mesh))
     };
     // Powers of two scale without rounding.
     for scale in [2.0f64.powi(-30), 2.0f64.powi(30)] {
@@ -77,7 +81,7 @@ fn a_scaled_input_gives_the_scaled_result() {
 #[test]
 fn the_number_of_threads_does_not_show() {
     let mesh = shapes::blob(5, 12);
-    let (map, target) = (radial_map(&mesh), Target::new(mesh));
+    let (map, target) = (radial_map(&mesh), target(mesh));
     let with_threads = |n| {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(n)
@@ -91,7 +95,7 @@ fn the_number_of_threads_does_not_show() {
 #[test]
 fn what_is_no_sphere_is_refused() {
     let mesh = shapes::sphere(6);
-    let (map, target) = (radial_map(&mesh), Target::new(mesh));
+    let (map, target) = (radial_map(&mesh), target(mesh));
     let deform = |primitive: &PolygonMesh, progress: &Progress| {
         deform(&map, primitive, &target, &Settings::default(), progress)
     };
@@ -123,7 +127,7 @@ fn a_box_keeps_its_corners_and_edges() {
             DVec3::new(0.5 * sign(0), 0.4 * sign(1), 0.3 * sign(2))
         })
         .collect();
-    let (map, target) = (radial_map(&mesh), Target::new(mesh));
+    let (map, target) = (radial_map(&mesh), target(mesh));
     for primitive in [icosphere(9), quad_sphere([9, 9, 9])] {
         let result = run(&map, &primitive, &target);
         let points = result.mesh.positions();

@@ -61,7 +61,7 @@ impl PartJob<'_> {
         let placed = clock.step("sphere", || self.place(&hierarchy, embedded.map, &stage))?;
         let stage = progress.part("deform", 0.8, 1.0);
         let deformed = clock.step("deform", || {
-            let target = deform::Target::new(full.clone());
+            let target = deform::Target::new(full.clone(), &stage)?;
             deform::deform(
                 &placed.map,
                 &placed.primitive,
