@@ -1,0 +1,141 @@
+"""The modal run behind the button, driven by the events that a window would send."""
+
+import time
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+import bpy
+import pytest
+from test_operator import Open, addon, arrays
+
+
+class Window:
+    """What the operator asks of Blender's window, and what it has set there."""
+
+    def __init__(self) -> None:
+        self.status: Any = None
+        self.timers: list[object] = []
+        self.handlers: list[object] = []
+        self.reports: list[str] = []
+
+    def context(self) -> SimpleNamespace:
+        manager = SimpleNamespace(
+            event_timer_add=self._add_timer,
+            event_timer_remove=self.timers.remove,
+            modal_handler_add=self.handlers.append,
+            windows=[],
+        )
+        real = bpy.context
+        return SimpleNamespace(
+            window_manager=manager,
+            workspace=SimpleNamespace(
+                status_text_set=lambda status: setattr(self, "status", status)
+            ),
+            window=None,
+            scene=real.scene,
+            view_layer=real.view_layer,
+            selected_objects=list(real.selected_objects),
+            mode="OBJECT",
+        )
+
+    def _add_timer(self, _step: float, **_window: object) -> object:
+        self.timers.append(object())
+        return self.timers[-1]
+
+
+@pytest.fixture
+def window(open_fixture: Open, monkeypatch: pytest.MonkeyPatch) -> Window:
+    open_fixture("01")
+    module = addon("operators.remesh")
+    app = SimpleNamespace(background=False)
+    monkeypatch.setattr(module, "bpy", SimpleNamespace(app=app, data=bpy.data, types=bpy.types))
+    return Window()
+
+
+def operator(window: Window, faces: int) -> SimpleNamespace:
+    """The operator's own functions on a stand-in for the instance that Blender would make."""
+    kind = addon("operators.remesh").OBJECT_OT_orbflow_remesh
+    settings = {name: getattr(bpy.context.scene.orbflow, name) for name in addon("settings").NAMES}
+    self = SimpleNamespace(**settings | {"faces": faces})
+    self.report = lambda _level, text: window.reports.append(text)
+    for name in ("invoke", "modal", "cancel", "_end", "_tidy", "_finish"):
+        setattr(self, name, getattr(kind, name).__get__(self))
+    return self
+
+
+def send(self: SimpleNamespace, context: SimpleNamespace, kind: str) -> set[str]:
+    return self.modal(context, SimpleNamespace(type=kind, value="PRESS"))
+
+
+def until(ended: Callable[[], set[str]]) -> set[str]:
+    for _ in range(2000):
+        answer = ended()
+        if "RUNNING_MODAL" not in answer:
+            return answer
+        time.sleep(0.01)
+    raise TimeoutError
+
+
+def is_tidy(window: Window) -> bool:
+    return window.status is None and not window.timers and not addon("operators.remesh")._running
+
+
+def test_a_run_ends_with_one_result_and_leaves_nothing_behind(window: Window) -> None:
+    context = window.context()
+    self = operator(window, faces=500)
+    assert self.invoke(context, None) == {"RUNNING_MODAL"}
+    assert window.status is not None
+    assert window.handlers == [self]
+    assert "press ESC" in addon("operators.remesh").why_not(context)
+    assert send(self, context, "MIDDLEMOUSE") == {"PASS_THROUGH"}
+    assert send(self, context, "LEFTMOUSE") == {"RUNNING_MODAL"}
+    assert until(lambda: send(self, context, "TIMER")) == {"FINISHED"}
+    assert len(bpy.data.objects["Spot"].data.polygons) < 520
+    assert is_tidy(window)
+    assert addon("panel").rows(addon("panel").last_report("Spot"))
+
+
+def test_escape_stops_it_and_changes_nothing(window: Window) -> None:
+    spot = bpy.data.objects["Spot"]
+    before = arrays(spot)
+    context = window.context()
+    self = operator(window, faces=200_000)
+    self.invoke(context, None)
+    assert send(self, context, "ESC") == {"RUNNING_MODAL"}
+    assert until(lambda: send(self, context, "TIMER")) == {"CANCELLED"}
+    assert arrays(spot) == before
+    assert window.reports == ["cancelled; nothing was changed"]
+    assert is_tidy(window)
+
+
+def test_blender_may_take_the_operator_away(window: Window) -> None:
+    context = window.context()
+    self = operator(window, faces=200_000)
+    self.invoke(context, None)
+    self.cancel(context)
+    assert is_tidy(window)
+
+
+def test_an_object_that_went_away_meanwhile_is_let_go(window: Window) -> None:
+    context = window.context()
+    self = operator(window, faces=500)
+    self.invoke(context, None)
+    bpy.data.objects.remove(bpy.data.objects["Spot"])
+    assert until(lambda: send(self, context, "TIMER")) == {"FINISHED"}
+    assert is_tidy(window)
+
+
+def test_the_status_bar_shows_the_step_and_how_to_stop(window: Window) -> None:
+    context = window.context()
+    self = operator(window, faces=500)
+    self.invoke(context, None)
+    shown: list[str] = []
+    layout = SimpleNamespace(
+        progress=lambda factor, text: shown.append(f"{text} {factor:.0f}"),
+        label=lambda text, icon: shown.append(f"{text} {icon}"),
+    )
+    window.status(SimpleNamespace(layout=layout), None)
+    self.cancel(context)
+    assert shown[0].startswith("Orbflow: ")
+    assert shown[1] == "Stop EVENT_ESC"
