@@ -166,7 +166,7 @@ impl From<PredictError> for Error {
 /// is proven to be a bijection.
 ///
 /// # Errors
-/// [`Error`]; for a predictor that returns, only when cancelled or when the coordinates of doubles
+/// [`enum@Error`]; for a predictor that returns, only when cancelled or when the coordinates of doubles
 /// are too coarse for the mesh.
 pub fn embed(
     hierarchy: &CollapseHierarchy,
@@ -220,7 +220,7 @@ fn embed_in_pool(
 /// [`distortion`] is a few percent higher than that of [`embed`].
 ///
 /// # Errors
-/// [`Error`]; without a cancellation only when the coordinates of doubles are too coarse.
+/// [`enum@Error`]; without a cancellation only when the coordinates of doubles are too coarse.
 pub fn even(hierarchy: &CollapseHierarchy, progress: &Progress) -> Result<SphereMap, Error> {
     rayon::scope(|_| {
         let growing = progress.part("", 0.0, 0.8);

@@ -26,7 +26,7 @@ pub struct ProposalReport {
 }
 
 impl ProposalReport {
-    /// Assesses what was proposed, as it is after [`unit_vectors`].
+    /// Assesses what was proposed, as it is after `unit_vectors`.
     pub fn new(mesh: &TriangleMesh, sphere: &VertexMap<DVec3>, n_relaxations: u64) -> Self {
         let n_folds = folded_faces(mesh.faces(), sphere).len();
         Self {

@@ -6,7 +6,7 @@ use super::super::polygon_mesh::MAX_ELEMENTS;
 use super::super::{FaceId, Id, VertexId};
 use super::BORDER;
 
-/// Why arrays do not make a [`TriangleMesh`].
+/// Why arrays do not make a [`TriangleMesh`](super::TriangleMesh).
 #[derive(Clone, PartialEq, Debug, Error)]
 pub enum TriangleMeshError {
     /// A coordinate is NaN or infinite.
