@@ -3,6 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use super::Frame;
+use crate::progress::{Cancelled, Progress};
 
 /// Triangles in a leaf, at most. One makes the tree larger for nothing; four slow the search by a
 /// tenth, since more triangles are tested in vain.
@@ -92,17 +93,34 @@ impl Bounds {
     }
 }
 
+/// Nodes with fewer triangles are built without a look at the progress: a millisecond of work.
+const LARGE: usize = 10_000;
+
 /// The nodes, root first, and the triangles in the order of leaves.
-pub(super) fn build(triangles: &[[DVec3; 3]], frame: Frame) -> (Vec<Node>, Vec<u32>) {
+pub(super) fn build(
+    triangles: &[[DVec3; 3]],
+    frame: Frame,
+    progress: &Progress,
+) -> Result<(Vec<Node>, Vec<u32>), Cancelled> {
+    progress.check()?;
     let mut boxes: Vec<Boxed> = (0..)
         .zip(triangles)
         .map(|(face, t)| boxed(face, t, frame))
         .collect();
-    let mut nodes = Vec::with_capacity(triangles.len() / LEAF + 1);
+    let mut builder = Builder {
+        nodes: Vec::with_capacity(triangles.len() / LEAF + 1),
+        progress,
+    };
     if !boxes.is_empty() {
-        add_node(&mut nodes, &mut boxes, 0, 0);
+        builder.add_node(&mut boxes, 0, 0)?;
     }
-    (nodes, boxes.into_iter().map(|b| b.face).collect())
+    let order = boxes.into_iter().map(|b| b.face).collect();
+    Ok((builder.nodes, order))
+}
+
+struct Builder<'a> {
+    nodes: Vec<Node>,
+    progress: &'a Progress<'a>,
 }
 
 fn boxed(face: u32, &[a, b, c]: &[DVec3; 3], frame: Frame) -> Boxed {
@@ -119,34 +137,44 @@ pub(super) fn round_down(p: DVec3) -> Vec3 {
     Vec3::from_array(p.as_vec3().to_array().map(f32::next_down))
 }
 
-fn add_node(nodes: &mut Vec<Node>, boxes: &mut [Boxed], start: usize, depth: u32) -> u32 {
-    let index = nodes.len();
-    nodes.push(Node {
-        low: [[f32::INFINITY; 4]; 3],
-        high: [[f32::NEG_INFINITY; 4]; 3],
-        child: [Child::NONE; 4],
-    });
-    let middle = split(boxes, depth);
-    let (left, right) = boxes.split_at_mut(middle);
-    let mut lane = 0;
-    let mut at = start;
-    for half in [left, right] {
-        let quarter = split(half, depth + 1);
-        let (first, second) = half.split_at_mut(quarter);
-        for part in [first, second] {
-            if !part.is_empty() {
-                let child = if part.len() <= LEAF {
-                    Child::leaf(at, part.len())
-                } else {
-                    Child(add_node(nodes, part, at, depth + 2))
-                };
-                set_lane(&mut nodes[index], lane, part, child);
-                lane += 1;
-                at += part.len();
+impl Builder<'_> {
+    fn add_node(
+        &mut self,
+        boxes: &mut [Boxed],
+        start: usize,
+        depth: u32,
+    ) -> Result<u32, Cancelled> {
+        if boxes.len() > LARGE {
+            self.progress.check()?;
+        }
+        let index = self.nodes.len();
+        self.nodes.push(Node {
+            low: [[f32::INFINITY; 4]; 3],
+            high: [[f32::NEG_INFINITY; 4]; 3],
+            child: [Child::NONE; 4],
+        });
+        let middle = split(boxes, depth);
+        let (left, right) = boxes.split_at_mut(middle);
+        let mut lane = 0;
+        let mut at = start;
+        for half in [left, right] {
+            let quarter = split(half, depth + 1);
+            let (first, second) = half.split_at_mut(quarter);
+            for part in [first, second] {
+                if !part.is_empty() {
+                    let child = if part.len() <= LEAF {
+                        Child::leaf(at, part.len())
+                    } else {
+                        Child(self.add_node(part, at, depth + 2)?)
+                    };
+                    set_lane(&mut self.nodes[index], lane, part, child);
+                    lane += 1;
+                    at += part.len();
+                }
             }
         }
+        Ok(index as u32)
     }
-    index as u32
 }
 
 fn set_lane(node: &mut Node, lane: usize, part: &[Boxed], child: Child) {

@@ -13,6 +13,7 @@ mod triangle;
 use glam::DVec3;
 
 use crate::mesh::{FaceId, Id, TriangleMesh};
+use crate::progress::{Cancelled, Progress};
 use build::Node;
 
 pub use triangle::closest_on_triangle;
@@ -79,21 +80,30 @@ impl Frame {
 impl Bvh {
     /// Builds the tree over triangles; face i is the i-th of them. O(n log n).
     pub fn new(triangles: &[[DVec3; 3]]) -> Self {
+        Self::build(triangles, &Progress::none()).expect("nobody cancels")
+    }
+
+    /// The same for large meshes: it can be cancelled.
+    ///
+    /// # Errors
+    /// When cancelled.
+    pub fn build(triangles: &[[DVec3; 3]], progress: &Progress) -> Result<Self, Cancelled> {
         let frame = Frame::of(triangles);
-        let (nodes, order) = build::build(triangles, frame);
+        let (nodes, order) = build::build(triangles, frame, progress)?;
+        progress.check()?;
         let mut slots = vec![0; triangles.len()];
         for (slot, &face) in order.iter().enumerate() {
             slots[face as usize] = slot as u32;
         }
         let sorted = order.iter().map(|&face| triangles[face as usize]).collect();
         let faces = order.into_iter().map(FaceId).collect();
-        Self {
+        Ok(Self {
             nodes,
             triangles: sorted,
             faces,
             slots,
             frame,
-        }
+        })
     }
 
     /// Builds the tree over the faces of a mesh.

@@ -1,6 +1,7 @@
 use proptest::prelude::*;
 
 use super::*;
+use crate::progress::CancelToken;
 use crate::random::Random;
 use crate::shapes;
 
@@ -139,6 +140,14 @@ fn no_triangle_means_nothing_is_found() {
     tree.visit_overlaps(DVec3::NEG_INFINITY, DVec3::INFINITY, |face| {
         panic!("{face}")
     });
+}
+
+#[test]
+fn a_raised_flag_stops_the_building() {
+    let token = CancelToken::new();
+    token.cancel();
+    let triangles = [[DVec3::X, DVec3::Y, DVec3::Z]; 3];
+    assert!(Bvh::build(&triangles, &Progress::silent(token)).is_err());
 }
 
 #[test]

@@ -7,6 +7,7 @@ use super::surface::Surface;
 use crate::measure::{Groups, angle_between};
 use crate::mesh::{FaceId, Id};
 use crate::nearest::Bvh;
+use crate::progress::{Cancelled, Progress};
 
 /// What is sharp on the input, in degrees between normals.
 const SHARP_INPUT: f64 = 40.0;
@@ -24,23 +25,30 @@ const TOLERANCE: f64 = 0.005;
 const SPACING: f64 = 0.001;
 
 /// F1 of sharp lines; none where the input has no clear ones.
-pub fn f1_pct(input: &Surface, output: &Surface) -> Option<f64> {
+pub fn f1_pct(
+    input: &Surface,
+    output: &Surface,
+    progress: &Progress,
+) -> Result<Option<f64>, Cancelled> {
     let diagonal = input.diagonal();
     let wanted = SharpLines::find(input, SHARP_INPUT, SHORTEST_LINE * diagonal);
     let is_clear = wanted.length >= LEAST_TOTAL * diagonal
         && wanted.length >= LEAST_SHARE * wanted.length_of_all.max(1e-300);
     if !is_clear {
-        return None;
+        return Ok(None);
     }
+    progress.check()?;
     let found = SharpLines::find(output, SHARP_OUTPUT, 0.0);
     let [wanted, found] = [&wanted, &found].map(|lines| lines.samples(SPACING * diagonal));
     if found.is_empty() {
-        return Some(0.0);
+        return Ok(Some(0.0));
     }
     let tolerance = TOLERANCE * diagonal;
+    progress.check()?;
     let precision = share_near(&found, &wanted, tolerance);
+    progress.check()?;
     let recall = share_near(&wanted, &found, tolerance);
-    Some(100.0 * harmonic(precision, recall))
+    Ok(Some(100.0 * harmonic(precision, recall)))
 }
 
 /// The share of points that have another point within the tolerance.

@@ -6,6 +6,7 @@ use serde::Serialize;
 use super::Error;
 use super::statistics::{mean, share};
 use super::surface::Surface;
+use super::watched::watched;
 use crate::measure::CurvatureField;
 use crate::mesh::{Id, VertexId};
 use crate::progress::{Cancelled, Progress};
@@ -35,7 +36,12 @@ pub fn flow(
     let scale = (input.area / n_quads as f64)
         .sqrt()
         .max(mean(&input.edge_lengths));
-    let field = CurvatureField::new(input.mesh.positions(), &input.triangles, scale)?;
+    let positions = input.mesh.positions().to_vec();
+    let triangles = input.triangles.clone();
+    let field = watched(
+        move || CurvatureField::new(&positions, &triangles, scale),
+        progress,
+    )??;
     progress.at(0.8)?;
     let irregular_pct = irregular_pct(output);
     let alignment_deg = alignment(input, &field, output, progress)?;

@@ -14,6 +14,7 @@ mod shape;
 mod statistics;
 mod surface;
 mod symmetry;
+mod watched;
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -150,12 +151,12 @@ pub fn score(
     if settings.target == Some(0) {
         return Err(Error::NoTarget);
     }
-    progress.at(0.0)?;
     let n_faces = input.n_faces();
-    let input = Surface::new(input).ok_or(Error::FlatInput { n_faces })?;
-    progress.at(0.1)?;
+    let input = Surface::new(input, &progress.part("", 0.0, 0.1))?;
+    let input = input.ok_or(Error::FlatInput { n_faces })?;
     let n_faces = output.n_faces();
-    let output = Surface::new(output).ok_or(Error::FlatOutput { n_faces })?;
+    let output = Surface::new(output, &progress.part("", 0.1, 0.15))?;
+    let output = output.ok_or(Error::FlatOutput { n_faces })?;
     measure(&input, &output, settings, progress)
 }
 
@@ -165,13 +166,18 @@ fn measure(
     settings: &Settings,
     progress: &Progress,
 ) -> Result<Score, Error> {
-    let crossing = crossing::pairs(output, &progress.part("", 0.1, 0.2))?;
+    let crossing = crossing::pairs(output, &progress.part("", 0.15, 0.2))?;
     let distance = distance::distance(input, output, settings, &progress.part("", 0.2, 0.7))?;
     let flow = flow::flow(input, output, settings.target, &progress.part("", 0.7, 0.9))?;
-    let feature_f1_pct = features::f1_pct(input, output);
-    progress.at(0.95)?;
+    progress.at(0.9)?;
+    let feature_f1_pct = features::f1_pct(input, output, progress)?;
+    progress.at(0.93)?;
     let own = topology_of(output.mesh, &output.edges);
+    progress.at(0.95)?;
     let other = topology_of(input.mesh, &input.edges);
+    progress.at(0.97)?;
+    let asymmetry = symmetry::asymmetry(input, output, settings.seed);
+    progress.at(0.99)?;
     let triangles = output.triangles.len();
     let of_target = |target: usize| triangles as f64 / 2.0 / target as f64;
     Ok(Score {
@@ -197,7 +203,7 @@ fn measure(
         chains: lines::chains(output),
         strips: lines::strips(output),
         feature_f1_pct,
-        asymmetry: symmetry::asymmetry(input, output, settings.seed),
+        asymmetry,
     })
 }
 

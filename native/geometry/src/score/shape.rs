@@ -121,11 +121,12 @@ fn smallest_angle(p: &[DVec3; 3]) -> f64 {
 mod tests {
     use super::*;
     use crate::mesh::PolygonMesh;
+    use crate::progress::Progress;
 
     fn of_quad(corners: [[f64; 3]; 4]) -> Shape {
         let mesh =
             PolygonMesh::from_faces(corners.map(DVec3::from).to_vec(), &[[0, 1, 2, 3]]).unwrap();
-        shape(&Surface::new(&mesh).unwrap())
+        shape(&Surface::new(&mesh, &Progress::none()).unwrap().unwrap())
     }
 
     fn is_near(value: Option<f64>, wanted: f64) -> bool {

@@ -2,9 +2,11 @@
 
 use glam::DVec3;
 
+use super::watched::watched;
 use crate::measure::{PolygonEdges, area_vector};
 use crate::mesh::{Id, PolygonMesh, VertexId, bounds};
 use crate::nearest::Bvh;
+use crate::progress::{Cancelled, Progress};
 use crate::random::Random;
 
 /// A polygon mesh, its edges, its triangles and their tree.
@@ -32,7 +34,8 @@ pub struct Sample {
 
 impl<'a> Surface<'a> {
     /// None if no face has an area.
-    pub fn new(mesh: &'a PolygonMesh) -> Option<Self> {
+    pub fn new(mesh: &'a PolygonMesh, progress: &Progress) -> Result<Option<Self>, Cancelled> {
+        progress.at(0.0)?;
         let triangles: Vec<[VertexId; 3]> = mesh.faces().flat_map(|face| cut(mesh, face)).collect();
         let corners: Vec<[DVec3; 3]> = triangles
             .iter()
@@ -41,23 +44,26 @@ impl<'a> Surface<'a> {
         let area_vectors: Vec<DVec3> = corners.iter().map(|&t| area_vector(t)).collect();
         let area: f64 = area_vectors.iter().map(|a| a.length()).sum();
         if area <= 0.0 || !area.is_finite() {
-            return None;
+            return Ok(None);
         }
-        let edges = PolygonEdges::new(mesh);
+        progress.at(0.3)?;
+        let copy = mesh.clone();
+        let edges = watched(move || PolygonEdges::new(&copy), progress)?;
+        progress.at(0.6)?;
         let length = |[a, b]: &[VertexId; 2]| mesh.position(*a).distance(mesh.position(*b));
         let edge_lengths = edges.ends.iter().map(length).collect();
         let used = used_positions(mesh);
-        Some(Self {
+        Ok(Some(Self {
             mesh,
             edge_lengths,
             edges,
             area_vectors,
             area,
-            tree: Bvh::new(&corners),
+            tree: Bvh::build(&corners, progress)?,
             bounds: bounds(&used),
             used,
             triangles,
-        })
+        }))
     }
 
     /// The length of the diagonal of the bounding box.
@@ -128,13 +134,17 @@ fn cut<'a>(
 mod tests {
     use super::*;
 
+    fn surface(mesh: &PolygonMesh) -> Surface<'_> {
+        Surface::new(mesh, &Progress::none()).unwrap().unwrap()
+    }
+
     #[test]
     fn samples_are_even_by_area_and_skip_what_has_none() {
         let positions = [0.0, 1.0, 4.0].map(|x| DVec3::X * x);
         let positions: Vec<_> = positions.into_iter().chain([DVec3::Y]).collect();
         let faces = [[0, 1, 2], [0, 1, 3], [1, 2, 3], [3, 3, 1]];
         let mesh = PolygonMesh::from_faces(positions, &faces).unwrap();
-        let samples = Surface::new(&mesh).unwrap().sample(400, 1);
+        let samples = surface(&mesh).sample(400, 1);
         let count = |t| samples.iter().filter(|s| s.triangle == t).count();
         assert_eq!([0, 1, 2, 3].map(count), [0, 100, 300, 0]);
     }
@@ -144,7 +154,7 @@ mod tests {
         let positions = [[0.0, 0.0], [1.0, -0.2], [3.0, 0.0], [1.0, 0.2]];
         let positions = positions.map(|[x, y]| DVec3::new(x, y, 0.0)).to_vec();
         let mesh = PolygonMesh::from_faces(positions, &[[0, 1, 2, 3]]).unwrap();
-        let triangles = Surface::new(&mesh).unwrap().triangles;
+        let triangles = surface(&mesh).triangles;
         assert_eq!(triangles, [[1, 2, 3], [1, 3, 0]].map(|t| t.map(VertexId)));
     }
 }
