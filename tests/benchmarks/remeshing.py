@@ -107,7 +107,7 @@ def _cost(done: Run, report: Row) -> Row:
         "cpu_s": done.cpu_s,
         "run_s": done.cpu_s - cpu_of(report, "score"),
         "wall_s": done.wall_s,
-        "peak_mb": done.peak_mb,
+        "peak_mb": report["peak_memory_mb"],
         "steps_s": {step["name"]: step["cpu_ms"] / 1000 for step in report["steps"]},
     }
 

@@ -42,7 +42,7 @@ class Studio:
     def decimate(self, name: str, n_faces: int) -> Path:
         """The input with fewer triangles."""
         mesh = self.folder / f"{name}_decimated.obj"
-        self._run("decimate", self.input(name), mesh, "--faces", n_faces)
+        self._program("decimate", self.input(name), mesh, "--faces", n_faces)
         return mesh
 
     def embed(self, mesh: Path) -> Path:
@@ -53,9 +53,11 @@ class Studio:
 
     def _run(self, verb: str, *arguments: str | Path | int) -> dict:
         report = self.folder / "report.json"
-        command = [self.orbflow, verb, *arguments, "--report", report]
-        subprocess.run([str(part) for part in command], check=True)
+        self._program(verb, *arguments, "--report", report)
         return json.loads(report.read_text())
+
+    def _program(self, *arguments: str | Path | int) -> None:
+        subprocess.run([str(part) for part in (self.orbflow, *arguments)], check=True)
 
 
 def overview(studio: Studio) -> list[list[Exhibit]]:
