@@ -96,10 +96,10 @@ struct Plan {
 impl Plan {
     fn new(sheet: &Sheet, edge: f64) -> Self {
         let n = sheet.n_vertices();
-        let points: Vec<_> = sheet.vertex_ids().map(|v| [sheet.position(v); 3]).collect();
+        let points: Vec<_> = sheet.vertex_ids().map(|v| sheet.position(v)).collect();
         Self {
             edge,
-            vertices: Bvh::new(&points),
+            vertices: Bvh::of_points(&points),
             router: Router::new(n, edge),
             taken: VertexMap::filled(n, false),
             corners: HashMap::new(),

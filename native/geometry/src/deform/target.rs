@@ -41,8 +41,7 @@ impl Target {
         progress.check()?;
         let features = feature_lines(&mesh, &normals, crease_angle);
         progress.check()?;
-        let bvh = Bvh::of_mesh(&mesh);
-        progress.check()?;
+        let bvh = Bvh::build_of_mesh(&mesh, progress)?;
         Ok(Self {
             mesh,
             bvh,

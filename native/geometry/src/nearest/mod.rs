@@ -108,8 +108,16 @@ impl Bvh {
 
     /// Builds the tree over the faces of a mesh.
     pub fn of_mesh(mesh: &TriangleMesh) -> Self {
+        Self::build_of_mesh(mesh, &Progress::none()).expect("nobody cancels")
+    }
+
+    /// The same for large meshes: it can be cancelled.
+    ///
+    /// # Errors
+    /// When cancelled.
+    pub fn build_of_mesh(mesh: &TriangleMesh, progress: &Progress) -> Result<Self, Cancelled> {
         let triangles: Vec<_> = mesh.face_ids().map(|face| mesh.triangle(face)).collect();
-        Self::new(&triangles)
+        Self::build(&triangles, progress)
     }
 
     /// Builds the tree over points, as triangles without size: face i is the i-th point.

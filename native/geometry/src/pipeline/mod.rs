@@ -166,7 +166,7 @@ fn run_parts(
     let total = prepared.mesh.n_faces();
     let mut done = 0;
     let mut results = Vec::with_capacity(parts.len());
-    for (part, n_faces) in parts.iter().zip(shares) {
+    for (part, n_faces) in parts.into_iter().zip(shares) {
         let from = share_of_work(done, total);
         done += part.n_faces();
         let progress = progress.part("", from, share_of_work(done, total));
@@ -197,7 +197,7 @@ fn transfer_materials(
     new: &PolygonMesh,
     progress: &Progress<'_>,
 ) -> Result<Vec<i32>, Cancelled> {
-    let source = Bvh::of_mesh(&prepared.mesh);
+    let source = Bvh::build_of_mesh(&prepared.mesh, progress)?;
     transfer::materials(&source, &prepared.materials(of_faces), new, progress)
 }
 

@@ -1,5 +1,7 @@
 //! One part: decimate, embed, make the sphere, deform it.
 
+use std::borrow::Cow;
+
 use glam::DVec3;
 
 use super::Error;
@@ -22,7 +24,7 @@ const LEAST_MAP_VERTICES: usize = 3_000;
 
 /// One part and what is to be made of it.
 pub struct PartJob<'a> {
-    pub part: &'a TriangleMesh,
+    pub part: TriangleMesh,
     pub n_faces: usize,
     pub settings: &'a Settings,
     pub predictor: &'a dyn OffsetPredictor,
@@ -46,8 +48,8 @@ struct Reduction {
 }
 
 impl PartJob<'_> {
-    pub fn run(&self, clock: &mut Clock, progress: &Progress<'_>) -> Result<PartResult, Error> {
-        let full = self.part;
+    pub fn run(self, clock: &mut Clock, progress: &Progress<'_>) -> Result<PartResult, Error> {
+        let (n_input_faces, area) = (self.part.n_faces(), measure::total_area(&self.part));
         let stage = progress.part("decimate", 0.0, 0.2);
         let reduction = clock.step("decimate", || self.reduce(&stage))?;
         let stage = progress.part("embed", 0.2, 0.6);
@@ -61,7 +63,7 @@ impl PartJob<'_> {
         let placed = clock.step("sphere", || self.place(&hierarchy, embedded.map, &stage))?;
         let stage = progress.part("deform", 0.8, 1.0);
         let deformed = clock.step("deform", || {
-            let target = deform::Target::new(full.clone(), &stage)?;
+            let target = deform::Target::new(self.part, &stage)?;
             deform::deform(
                 &placed.map,
                 &placed.primitive,
@@ -71,7 +73,7 @@ impl PartJob<'_> {
             )
         })?;
         let report = PartReport {
-            n_input_faces: full.n_faces(),
+            n_input_faces,
             n_asked_faces: self.n_faces,
             n_faces: deformed.mesh.n_faces(),
             reduced: reduction.reduced,
@@ -80,7 +82,6 @@ impl PartJob<'_> {
             sphere: placed.report,
             deform: deformed.report,
         };
-        let area = measure::total_area(full);
         Ok(PartResult {
             mesh: deformed.mesh,
             sphere: deformed.sphere,
@@ -91,20 +92,19 @@ impl PartJob<'_> {
 
     /// Brings the part down to the size of the map.
     fn reduce(&self, progress: &Progress<'_>) -> Result<Reduction, Error> {
-        let full = self.part;
-        let (start, reduced) = match self.reduced.map(|mesh| usable(mesh, full)) {
+        let full = Cow::Borrowed(&self.part);
+        let (start, reduced) = match self.reduced.map(|mesh| usable(mesh, &full)) {
             Some(Ok(mesh)) => {
                 let n_faces = mesh.n_faces();
-                (Some(mesh), Some(Reduced::Used { n_faces }))
+                (Cow::Owned(mesh), Some(Reduced::Used { n_faces }))
             }
-            Some(Err(reason)) => (None, Some(Reduced::Refused { reason })),
-            None => (None, None),
+            Some(Err(reason)) => (full, Some(Reduced::Refused { reason })),
+            None => (full, None),
         };
-        let start = start.unwrap_or_else(|| full.clone());
         let n_faces = self.n_map_faces();
         if start.n_faces() <= n_faces {
             return Ok(Reduction {
-                mesh: start,
+                mesh: start.into_owned(),
                 reduced,
                 report: None,
             });
