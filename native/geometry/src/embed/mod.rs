@@ -7,6 +7,7 @@
 //! (Praun & Hoppe 2003, with the symmetric Dirichlet energy of Smith & Schaefer 2015); it is the
 //! baseline, and what is done when a proposal cannot be repaired.
 
+mod cover;
 mod energy;
 mod fan;
 mod finish;
@@ -28,6 +29,7 @@ use crate::hierarchy::CollapseHierarchy;
 use crate::mesh::VertexMap;
 use crate::progress::{Cancelled, Progress};
 use crate::sphere_map::{NotABijection, SphereMap, folded_faces};
+pub use cover::{CoverError, CoverReport, Covered, cover};
 pub use energy::distortion;
 use finish::finish;
 pub use proposal::ProposalReport;
@@ -266,7 +268,12 @@ impl Valid {
             self.report.mirrored = true;
             sphere = turned;
         }
-        if let Some(repaired) = repair::repair(mesh, sphere, &progress.part("", 0.0, 0.5))? {
+        if let Some(repaired) = repair::repair(
+            mesh,
+            sphere,
+            repair::SMOOTHING,
+            &progress.part("", 0.0, 0.5),
+        )? {
             self.n_relaxations += repaired.n_relaxations;
             self.report.n_moved = repaired.n_moved;
             self.sphere = repaired.sphere;

@@ -17,8 +17,8 @@ use crate::sphere_map::{is_positive, triple_product};
 const MAX_SHARE: f64 = 0.5;
 /// The largest valence that a collapse may make while there are others.
 const MAX_VALENCE: usize = 12;
-/// Over all vertices in the end.
-const SMOOTHING: Limits = Limits {
+/// The sweeps over all vertices that a whole map gets in the end.
+pub const SMOOTHING: Limits = Limits {
     max_sweeps: 2,
     tolerance: 0.0,
 };
@@ -35,7 +35,7 @@ pub struct Repaired {
 }
 
 /// Takes the vertices of folds out until every fan is positive and winds once, then puts them back
-/// in reverse. None when too much would have to go, or when there is no room to put it back.
+/// in reverse, and smooths all. None when too much would have to go, or when there is no room to put it back.
 ///
 /// `sphere` holds zero where there is no usable point; such vertices are taken out too.
 ///
@@ -44,6 +44,7 @@ pub struct Repaired {
 pub fn repair(
     mesh: &TriangleMesh,
     sphere: VertexMap<DVec3>,
+    smoothing: Limits,
     progress: &Progress,
 ) -> Result<Option<Repaired>, Cancelled> {
     let mut clearing = Clearing {
@@ -55,7 +56,12 @@ pub fn repair(
     }
     let Clearing { partial, removed } = clearing;
     let mut growth = Growth::new(partial, mesh, Stiffness::Shape);
-    match put_back(&mut growth, &removed, &progress.part("", 0.5, 1.0)) {
+    match put_back(
+        &mut growth,
+        &removed,
+        smoothing,
+        &progress.part("", 0.5, 1.0),
+    ) {
         Err(GrowError::NoRoom { .. }) => Ok(None),
         Err(GrowError::Cancelled(cancelled)) => Err(cancelled),
         Ok(()) => Ok(Some(Repaired {
@@ -70,6 +76,7 @@ pub fn repair(
 fn put_back(
     growth: &mut Growth,
     removed: &[(VertexId, Vec<VertexId>)],
+    smoothing: Limits,
     progress: &Progress,
 ) -> Result<(), GrowError> {
     for (i, (vertex, ring)) in removed.iter().rev().enumerate() {
@@ -81,7 +88,7 @@ fn put_back(
             progress.at(i as f64 / removed.len() as f64)?;
         }
     }
-    Ok(growth.sweeps(SMOOTHING, progress)?)
+    Ok(growth.sweeps(smoothing, progress)?)
 }
 
 /// A map from which the folds are taken out.
