@@ -42,6 +42,7 @@ pub mod clean;
 pub mod decimate;
 pub mod deform;
 pub mod embed;
+pub mod flow;
 pub mod hierarchy;
 pub mod measure;
 pub mod mesh;

@@ -9,7 +9,7 @@ const FLOORS: [&[&str]; 4] = [
     &["mesh", "progress", "random", "sparse"],
     &["hierarchy", "measure", "nearest", "sphere_map"],
     &[
-        "clean", "decimate", "deform", "embed", "score", "sphere", "transfer",
+        "clean", "decimate", "deform", "embed", "flow", "score", "sphere", "transfer",
     ],
     &["pipeline"],
 ];

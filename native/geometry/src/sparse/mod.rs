@@ -5,10 +5,14 @@
 //! input gives the same bits however many threads the caller uses. Matrices that are not positive
 //! definite are refused; there is no pivoting and no iteration.
 
+mod hermitian;
+
 use faer::linalg::solvers::Solve;
 use faer::sparse::{SparseColMat, Triplet, linalg::solvers::Llt};
 use glam::DVec3;
 use thiserror::Error;
+
+pub use hermitian::{HermitianCholesky, HermitianMatrix, Order};
 
 /// A symmetric matrix under construction; entries at the same place add up.
 #[derive(Clone, Debug)]

@@ -1,0 +1,91 @@
+use super::*;
+use crate::shapes;
+
+fn field_of(mesh: &TriangleMesh) -> OrientationField {
+    orient(mesh, &Settings::default(), &Progress::none()).unwrap()
+}
+
+#[test]
+fn every_shape_has_a_consistent_field() {
+    for (name, mesh) in shapes::closed(10) {
+        let field = field_of(&mesh);
+        assert_eq!(field.check(&mesh), Ok(()), "{name}");
+        for face in mesh.face_ids() {
+            let direction = field.directions[face];
+            assert!((direction.length() - 1.0).abs() < 1e-12);
+            let normal = crate::measure::face_normal(&mesh, face);
+            assert!(direction.dot(normal).abs() < 1e-9, "{name}");
+        }
+    }
+}
+
+#[test]
+fn a_box_is_singular_at_its_corners_alone() {
+    let mesh = shapes::cuboid(10);
+    let field = field_of(&mesh);
+    for (v, &index) in field.indices.iter_ids() {
+        let p = mesh.position(v).abs();
+        let is_corner = p.distance(DVec3::new(0.5, 0.4, 0.3)) < 1e-9;
+        assert_eq!(index, i32::from(is_corner), "{p}");
+    }
+}
+
+#[test]
+fn turns_compare_the_crosses_of_neighbours() {
+    let mesh = shapes::blob(3, 16);
+    let field = field_of(&mesh);
+    let charts = Charts::new(&mesh);
+    let axes = axes(&mesh);
+    let mut worst: f64 = 0.0;
+    for h in mesh.halfedge_ids() {
+        let twin = mesh.twin(h).unwrap();
+        let in_frame = |h: HalfedgeId| {
+            let Axes { u, v, .. } = axes[h.face()];
+            let d = field.directions[h.face()];
+            glam::DVec2::new(d.dot(u), -d.dot(v)).rotate(charts.edge(h))
+        };
+        let across = -quarter_turn(in_frame(h), field.turns[h]);
+        worst = worst.max(across.angle_to(in_frame(twin)).abs());
+    }
+    assert!(worst <= TAU / 8.0 + 1e-9, "{worst}");
+}
+
+#[test]
+fn a_rod_is_followed_along_and_around() {
+    let mesh = shapes::capsule(8.0, 24);
+    let field = field_of(&mesh);
+    for face in mesh.face_ids() {
+        let height = mesh
+            .triangle(face)
+            .iter()
+            .map(|p| p.z.abs())
+            .fold(0.0, f64::max);
+        if height < 3.0 {
+            let along = field.directions[face].z.abs();
+            assert!(!(0.05..0.9987).contains(&along), "{along}");
+        }
+    }
+}
+
+#[test]
+fn open_meshes_and_rings_are_refused() {
+    let ring = shapes::torus(8, 6);
+    let refused = FieldError::NotASphere {
+        n_borders: 0,
+        euler: 0,
+    };
+    let settings = Settings::default();
+    assert_eq!(orient(&ring, &settings, &Progress::none()), Err(refused));
+}
+
+#[test]
+fn a_cancelled_field_is_not_made() {
+    let token = crate::progress::CancelToken::new();
+    token.cancel();
+    let cancelled = orient(
+        &shapes::sphere(4),
+        &Settings::default(),
+        &Progress::silent(token),
+    );
+    assert_eq!(cancelled, Err(FieldError::Cancelled(Cancelled)));
+}

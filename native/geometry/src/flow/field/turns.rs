@@ -1,0 +1,56 @@
+//! Quarter turns between the frames of neighbouring faces, and the singularities they make.
+
+use std::f64::consts::FRAC_PI_2;
+
+use glam::DVec2;
+
+use super::charts::Charts;
+use crate::mesh::{FaceMap, HalfedgeMap, Id, TriangleMesh, VertexMap};
+
+/// i^r w: a vector turned by r quarters, exactly.
+pub fn quarter_turn(w: DVec2, quarters: u8) -> DVec2 {
+    match quarters % 4 {
+        0 => w,
+        1 => w.perp(),
+        2 => -w,
+        _ => -w.perp(),
+    }
+}
+
+/// The turns across all halfedges and the indices of all vertices, from the angles of the crosses
+/// in their charts.
+///
+/// A halfedge's vector is w in the frame of its face and −i^r w in that of its twin's. The angle
+/// between the two crosses is split into the nearest number of quarters and a residual; around a
+/// vertex the residuals and the missing angle make a whole number of quarters: its index.
+pub fn match_crosses(
+    mesh: &TriangleMesh,
+    charts: &Charts,
+    angles: &FaceMap<f64>,
+) -> (HalfedgeMap<u8>, VertexMap<i32>) {
+    let n_halfedges = 3 * mesh.n_faces();
+    let mut turns = HalfedgeMap::filled(n_halfedges, 0);
+    let mut residuals = HalfedgeMap::filled(n_halfedges, 0.0);
+    for h in mesh.halfedge_ids() {
+        let Some(twin) = mesh.twin(h).filter(|twin| h < *twin) else {
+            continue;
+        };
+        let carry = charts.carry(h, twin).to_angle();
+        let between = (angles[twin.face()] - angles[h.face()] - carry) / FRAC_PI_2;
+        let quarters = between.round();
+        residuals[h] = between - quarters;
+        residuals[twin] = quarters - between;
+        turns[h] = (-(quarters as i64)).rem_euclid(4) as u8;
+        turns[twin] = (4 - turns[h]) % 4;
+    }
+    let mut quarters = vec![4.0; mesh.n_vertices()];
+    for h in mesh.halfedge_ids() {
+        let missing = residuals[h.prev()] - charts.angle(h) / FRAC_PI_2;
+        quarters[mesh.origin(h).index()] += missing;
+    }
+    let indices = quarters
+        .into_iter()
+        .map(|q: f64| q.round() as i32)
+        .collect();
+    (turns, indices)
+}

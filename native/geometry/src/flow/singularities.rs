@@ -1,0 +1,256 @@
+//! Fewer and simpler singularities, at the resolution of the result.
+//!
+//! Two singularities of opposite sign that are closer than a quad or so cannot both have a vertex
+//! in the result; nor should one vertex take two quarters if a vertex beside it can take the other.
+//! Moving s quarters along a path of edges a → b adds s to the turns of the path's halfedges:
+//! nothing else changes, and the field stays consistent throughout.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use crate::flow::field::OrientationField;
+use crate::mesh::{HalfedgeId, TriangleMesh, VertexId, VertexMap};
+
+/// Opposite singularities closer than this many edges of a quad are merged. Smaller leaves pairs
+/// that the result cannot hold; at 2 to 3 the shape suffers.
+const MERGE_RADIUS: f64 = 1.2;
+/// Two negative ones must be closer: merging them makes a vertex of valence 6.
+const MERGE_RADIUS_NEGATIVE: f64 = 0.5;
+
+/// Merges and splits singularities for quads of edge length `h`.
+///
+/// Opposite ones closer than 1.2 h are merged, nearest first, pairs that cancel before others;
+/// negative ones closer than 0.5 h where the sum is at least −2; of those with index 2 or more all
+/// units but one are moved about 1.2 h away, to regular vertices, where the mesh has any.
+/// Directions are kept; turns and indices change. O(s · n) for s singularities.
+pub fn tidy(mesh: &TriangleMesh, field: &mut OrientationField, h: f64) {
+    merge(mesh, field, h);
+    split(mesh, field, h);
+    debug_assert_eq!(field.check(mesh), Ok(()));
+}
+
+/// Two singularities and the way from one to the other.
+struct Pair {
+    ends: [VertexId; 2],
+    length: f64,
+    path: Vec<HalfedgeId>,
+}
+
+fn merge(mesh: &TriangleMesh, field: &mut OrientationField, h: f64) {
+    let mut pairs = close_pairs(mesh, field, MERGE_RADIUS * h);
+    loop {
+        let mut best: Option<(f64, usize)> = None;
+        pairs.retain(|pair| pair.ends.iter().all(|&end| field.indices[end] != 0));
+        for (i, pair) in pairs.iter().enumerate() {
+            let [a, b] = pair.ends.map(|end| field.indices[end]);
+            let Some(cost) = merge_cost([a, b], pair.length / h) else {
+                continue;
+            };
+            if best.is_none_or(|(least, _)| cost < least) {
+                best = Some((cost, i));
+            }
+        }
+        let Some((_, i)) = best else {
+            return;
+        };
+        let index = field.indices[pairs[i].ends[0]];
+        shift(field, mesh, &pairs[i].path, index);
+    }
+}
+
+/// How willingly two indices this many edges apart are merged: the least first, none never.
+fn merge_cost([a, b]: [i32; 2], distance: f64) -> Option<f64> {
+    let sum = a + b;
+    let opposite = a * b < 0 && sum.abs() <= a.abs().max(b.abs());
+    let negative = a < 0 && b < 0 && sum >= -2 && distance < MERGE_RADIUS_NEGATIVE;
+    (opposite || negative).then_some(if sum == 0 { 0.7 * distance } else { distance })
+}
+
+/// All pairs of singularities closer than `radius`, each once.
+fn close_pairs(mesh: &TriangleMesh, field: &OrientationField, radius: f64) -> Vec<Pair> {
+    let singular = |v: &VertexId| field.indices[*v] != 0;
+    let mut reach = Reach::new(mesh);
+    let mut pairs = Vec::new();
+    for a in mesh.vertex_ids().filter(singular) {
+        reach.spread(a, radius);
+        for &b in reach.seen.iter().filter(|&&b| a < b && singular(&b)) {
+            pairs.push(Pair {
+                ends: [a, b],
+                length: reach.distances[b],
+                path: reach.path(b),
+            });
+        }
+    }
+    pairs
+}
+
+/// Moves units of indices of 2 and more away until every index is 1 or less.
+fn split(mesh: &TriangleMesh, field: &mut OrientationField, h: f64) {
+    let mut reach = Reach::new(mesh);
+    for v in mesh.vertex_ids() {
+        while field.indices[v] >= 2 {
+            reach.spread(v, 2.0 * MERGE_RADIUS * h);
+            let misfit = |u: VertexId| (reach.distances[u] - MERGE_RADIUS * h).abs();
+            let free = reach
+                .seen
+                .iter()
+                .copied()
+                .filter(|&u| field.indices[u] == 0);
+            let Some(u) = free.min_by(|&a, &b| misfit(a).total_cmp(&misfit(b))) else {
+                break;
+            };
+            shift(field, mesh, &reach.path(u), 1);
+        }
+    }
+}
+
+/// Moves `quarters` of index from the start of a path to its end.
+fn shift(field: &mut OrientationField, mesh: &TriangleMesh, path: &[HalfedgeId], quarters: i32) {
+    let [Some(&first), Some(&last)] = [path.first(), path.last()] else {
+        return;
+    };
+    for &h in path {
+        let twin = mesh.twin(h).expect("the mesh of a field is closed");
+        field.turns[h] = (i32::from(field.turns[h]) + quarters).rem_euclid(4) as u8;
+        field.turns[twin] = (4 - field.turns[h]) % 4;
+    }
+    field.indices[mesh.origin(first)] -= quarters;
+    field.indices[mesh.target(last)] += quarters;
+}
+
+/// Shortest ways along edges from one vertex (Dijkstra), within a radius.
+struct Reach<'a> {
+    mesh: &'a TriangleMesh,
+    distances: VertexMap<f64>,
+    /// The last halfedge of the way to each vertex.
+    arrivals: VertexMap<Option<HalfedgeId>>,
+    /// The vertices within the radius, nearest first.
+    seen: Vec<VertexId>,
+    touched: Vec<VertexId>,
+}
+
+impl<'a> Reach<'a> {
+    fn new(mesh: &'a TriangleMesh) -> Self {
+        Self {
+            mesh,
+            distances: VertexMap::filled(mesh.n_vertices(), f64::INFINITY),
+            arrivals: VertexMap::filled(mesh.n_vertices(), None),
+            seen: Vec::new(),
+            touched: Vec::new(),
+        }
+    }
+
+    fn spread(&mut self, from: VertexId, radius: f64) {
+        for v in self.touched.drain(..) {
+            self.distances[v] = f64::INFINITY;
+            self.arrivals[v] = None;
+        }
+        self.seen.clear();
+        let mut queue = BinaryHeap::from([Reverse((0_u64, from))]);
+        self.distances[from] = 0.0;
+        self.touched.push(from);
+        while let Some(Reverse((bits, v))) = queue.pop() {
+            // The bits of positive numbers are ordered as the numbers are.
+            let distance = f64::from_bits(bits);
+            if distance > self.distances[v] {
+                continue;
+            }
+            self.seen.push(v);
+            for h in self.mesh.outgoing(v) {
+                let to = self.mesh.target(h);
+                let step = self.mesh.position(to).distance(self.mesh.position(v));
+                let through = distance + step;
+                if through <= radius && through < self.distances[to] {
+                    if self.distances[to].is_infinite() {
+                        self.touched.push(to);
+                    }
+                    self.distances[to] = through;
+                    self.arrivals[to] = Some(h);
+                    queue.push(Reverse((through.to_bits(), to)));
+                }
+            }
+        }
+    }
+
+    /// The halfedges from the start to a vertex that was reached.
+    fn path(&self, to: VertexId) -> Vec<HalfedgeId> {
+        let step = |v: VertexId| self.arrivals[v];
+        let last = step(to);
+        let mut path: Vec<HalfedgeId> =
+            std::iter::successors(last, |&h| step(self.mesh.origin(h))).collect();
+        path.reverse();
+        path
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flow::field::{Settings, orient};
+    use crate::measure::total_area;
+    use crate::progress::Progress;
+    use crate::shapes;
+
+    fn tidied(mesh: &TriangleMesh, n_quads: f64) -> OrientationField {
+        let mut field = orient(mesh, &Settings::default(), &Progress::none()).unwrap();
+        tidy(mesh, &mut field, (total_area(mesh) / n_quads).sqrt());
+        field
+    }
+
+    #[test]
+    fn shapes_keep_consistent_fields_with_simple_singularities() {
+        for (name, mesh) in shapes::closed(14) {
+            for n_quads in [100.0, 400.0] {
+                let field = tidied(&mesh, n_quads);
+                assert_eq!(field.check(&mesh), Ok(()), "{name}");
+                assert!(field.indices.iter().all(|k| (-2..=1).contains(k)), "{name}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_sphere_keeps_eight_singularities() {
+        let field = tidied(&shapes::sphere(20), 200.0);
+        let singular: Vec<i32> = field.indices.iter().copied().filter(|k| *k != 0).collect();
+        assert_eq!(singular, [1; 8]);
+    }
+
+    #[test]
+    fn a_unit_moved_away_and_back_leaves_the_field_as_it_was() {
+        let mesh = shapes::blob(4, 8);
+        let before = orient(&mesh, &Settings::default(), &Progress::none()).unwrap();
+        let mut reach = Reach::new(&mesh);
+        reach.spread(VertexId(3), f64::INFINITY);
+        let path = reach.path(VertexId(200));
+        let mut field = before.clone();
+        shift(&mut field, &mesh, &path, 3);
+        assert_eq!(field.check(&mesh), Ok(()));
+        assert_eq!(
+            field.indices[VertexId(200)],
+            before.indices[VertexId(200)] + 3
+        );
+        shift(&mut field, &mesh, &path, -3);
+        assert_eq!(field, before);
+    }
+
+    #[test]
+    fn opposite_neighbours_are_merged() {
+        let mesh = shapes::sphere(10);
+        let mut field = orient(&mesh, &Settings::default(), &Progress::none()).unwrap();
+        let regular = |v: &VertexId| {
+            let around = mesh.neighbours(*v).chain([*v]);
+            around.into_iter().all(|u| field.indices[u] == 0)
+        };
+        let v = mesh.vertex_ids().find(regular).unwrap();
+        let path = [mesh.outgoing(v).next().unwrap()];
+        let before = field.clone();
+        shift(&mut field, &mesh, &path, 1);
+        merge(
+            &mesh,
+            &mut field,
+            mesh.position(v)
+                .distance(mesh.position(mesh.target(path[0]))),
+        );
+        assert_eq!(field, before);
+    }
+}
