@@ -17,6 +17,7 @@
 mod cover;
 mod features;
 mod flips;
+mod follow;
 mod project;
 mod relax;
 mod route;
@@ -32,7 +33,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::measure::vertex_normals;
-use crate::mesh::{FaceId, PolygonMesh};
+use crate::mesh::{FaceId, FaceMap, PolygonMesh};
 use crate::progress::{Cancelled, Progress};
 use crate::sphere_map::{NotACover, SphereMap, check_cover};
 use cover::Cover;
@@ -49,6 +50,8 @@ pub struct Settings {
     pub n_relaxations: usize,
     /// The same for a primitive with quads, which cannot flip its way out.
     pub n_quad_relaxations: usize,
+    /// The same for quads that flow.
+    pub n_flow_relaxations: usize,
     /// How often the faces are fitted to the surface by least squares.
     pub n_straddles: usize,
     /// How strongly vertices are held where they are while faces are fitted.
@@ -60,6 +63,7 @@ impl Default for Settings {
         Self {
             n_relaxations: 4,
             n_quad_relaxations: 0,
+            n_flow_relaxations: 60,
             n_straddles: 2,
             anchor: Anchor::default(),
         }
@@ -105,6 +109,14 @@ pub enum Error {
         face: FaceId,
         /// How many corners it has.
         n_corners: usize,
+    },
+    /// Not one wanted position per vertex, or not one cross per face of the map.
+    #[error("{counts:?} wanted positions and crosses; {needed:?} are needed")]
+    Counts {
+        /// What was given.
+        counts: [usize; 2],
+        /// How many vertices the quads have, and how many faces the map.
+        needed: [usize; 2],
     },
     /// The user asked to stop.
     #[error(transparent)]
@@ -165,6 +177,78 @@ pub fn deform(
         sphere,
         report,
     })
+}
+
+/// Rounds in which flowing quads are led to where they are wanted; later ones move next to nothing.
+const N_LEADS: usize = 8;
+
+/// Quads on the unit sphere that follow a field of crosses on the map's surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Flowing<'a> {
+    /// The quads; their positions lie on the unit sphere.
+    pub quads: &'a PolygonMesh,
+    /// Where in space each vertex is wanted, near the map's surface.
+    pub wanted: &'a [DVec3],
+    /// One arm of the cross of every face of the map's mesh, a unit vector along the face.
+    pub crosses: &'a FaceMap<DVec3>,
+}
+
+/// Deforms quads that flow into the target's surface, so that their edges keep to the crosses.
+///
+/// As [`deform`] but for the relaxation: connections stay, edges turn along the crosses and get
+/// one length, and quads that are sheared in the end are mended as far as they can be.
+///
+/// # Errors
+/// A primitive that is not a sphere of triangles and quads, and [`Cancelled`].
+pub fn deform_flow(
+    map: &SphereMap,
+    flowing: Flowing<'_>,
+    target: &Target,
+    settings: &Settings,
+    progress: &Progress,
+) -> Result<Deformed, Error> {
+    check_primitive(flowing.quads)?;
+    flowing.check(map)?;
+    let mut report = Report::default();
+    let mut sheet = Sheet::new(map, vertex_normals(map.mesh()), flowing.quads);
+    let part = progress.part("", 0.0, 0.6);
+    follow::lead(
+        &mut sheet,
+        flowing.wanted,
+        N_LEADS,
+        &progress.part("", 0.0, 0.05),
+    )?;
+    report.n_stuck = follow::follow(
+        &mut sheet,
+        flowing.crosses,
+        settings.n_flow_relaxations,
+        &part,
+    )?;
+    let reach = sheet.mean_edge();
+    report.n_unprojected = project::project(&mut sheet, target, reach, progress)?;
+    for round in 0..settings.n_straddles {
+        progress.at(0.7 + 0.3 * round as f64 / settings.n_straddles as f64)?;
+        straddle::straddle(&mut sheet, target, (reach, settings.anchor), progress)?;
+    }
+    let (mesh, sphere) = sheet.into_mesh();
+    debug_assert_eq!(check_cover(&mesh, &sphere), Ok(()));
+    Ok(Deformed {
+        mesh,
+        sphere,
+        report,
+    })
+}
+
+impl Flowing<'_> {
+    /// Whether there is a position for every vertex and a cross for every face.
+    fn check(&self, map: &SphereMap) -> Result<(), Error> {
+        let counts = [self.wanted.len(), self.crosses.len()];
+        let needed = [self.quads.n_vertices(), map.mesh().n_faces()];
+        if counts == needed {
+            return Ok(());
+        }
+        Err(Error::Counts { counts, needed })
+    }
 }
 
 fn check_primitive(primitive: &PolygonMesh) -> Result<(), Error> {

@@ -8,6 +8,9 @@ use rayon::prelude::*;
 use crate::mesh::{FaceId, FaceMap, PolygonMesh, VertexId, VertexMap};
 use crate::sphere_map::{SphereMap, SurfacePoint, is_positive, walk_along};
 
+/// Cosine between a quad's own normal and the surface's below which the quad counts as turned over.
+const LEAST_AGREEMENT: f64 = 0.2;
+
 /// A triangle or a quad.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) struct Face {
@@ -203,7 +206,7 @@ impl<'a> Sheet<'a> {
     }
 
     /// Whether every face at a vertex stays positive with another sphere point for it.
-    fn covers(&self, vertex: VertexId, sphere: DVec3) -> bool {
+    pub fn covers(&self, vertex: VertexId, sphere: DVec3) -> bool {
         let at = |v: VertexId| {
             if v == vertex {
                 sphere
@@ -223,6 +226,16 @@ impl<'a> Sheet<'a> {
             .iter()
             .map(|&face| quality(&self.faces[face], at));
         qualities.fold(f64::INFINITY, f64::min)
+    }
+
+    /// How bad the faces at a vertex were if it were at `to`: Σ (enough − quality)² over those
+    /// that are worse than `enough`.
+    pub fn badness(&self, vertex: VertexId, to: &Point, enough: f64) -> f64 {
+        let at = |v: VertexId| if v == vertex { to } else { &self.points[v] };
+        let lacks = self.rings[vertex]
+            .iter()
+            .map(|&face| (enough - quality(&self.faces[face], at)).max(0.0).powi(2));
+        lacks.sum()
     }
 
     /// The quality of a face.
@@ -276,7 +289,8 @@ fn is_unfolded(face: &Face, at: impl Fn(VertexId) -> DVec3) -> bool {
 /// How near a face is to a regular polygon seen along the surface's normal: 1 for a regular
 /// one, 0 for one without area, negative where a corner turns the wrong way.
 ///
-/// Triangles: 2√3 × twice the area / Σ squared edges. Quads: the sine of the worst corner.
+/// Triangles: 2√3 × twice the area / Σ squared edges. Quads: the scaled Jacobian, the sine of the
+/// worst corner, seen along the quad's own normal where that looks out of the surface.
 fn quality<'p>(face: &Face, at: impl Fn(VertexId) -> &'p Point) -> f64 {
     let corners = face.corners.map(at);
     let p = corners.map(|c| c.position);
@@ -288,7 +302,13 @@ fn quality<'p>(face: &Face, at: impl Fn(VertexId) -> &'p Point) -> f64 {
         return 2.0 * 3.0f64.sqrt() * e.cross(f).dot(normal) / squares.max(f64::MIN_POSITIVE);
     }
     let sum = corners.iter().fold(DVec3::ZERO, |sum, c| sum + c.normal);
-    let normal = sum.normalize_or_zero();
+    let outward = sum.normalize_or_zero();
+    let own = (p[2] - p[0]).cross(p[3] - p[1]).normalize_or_zero();
+    let normal = if own.dot(outward) > LEAST_AGREEMENT {
+        own
+    } else {
+        outward
+    };
     let edge = |i: usize| (p[(i + 1) % 4] - p[i]).normalize_or_zero();
     let edges = [edge(0), edge(1), edge(2), edge(3)];
     let sine = |i: usize| edges[i].cross(edges[(i + 1) % 4]).dot(normal);

@@ -149,3 +149,103 @@ fn a_box_keeps_its_corners_and_edges() {
         );
     }
 }
+
+/// Crosses about along the lines of a quad sphere.
+fn crosses(mesh: &TriangleMesh) -> FaceMap<DVec3> {
+    let cross = |face| {
+        let n = crate::measure::face_normal(mesh, face);
+        let axis = DVec3::AXES[(n.abs().max_position() + 1) % 3];
+        (axis - n * axis.dot(n)).normalize_or_zero()
+    };
+    mesh.face_ids().map(cross).collect()
+}
+
+/// A quad sphere whose vertices are led away from their places by `noise`, then relaxed.
+fn flowed(mesh: &TriangleMesh, noise: f64, n_flow_relaxations: usize) -> Deformed {
+    let map = radial_map(mesh);
+    let quads = quad_sphere([7, 7, 7]);
+    let crosses = crosses(mesh);
+    let wanted: Vec<_> = quads
+        .positions()
+        .iter()
+        .map(|&p| map.surface_position(map.locate(p)) + noise * (p * 97.0).map(f64::sin))
+        .collect();
+    let flowing = Flowing {
+        quads: &quads,
+        wanted: &wanted,
+        crosses: &crosses,
+    };
+    let settings = Settings {
+        n_flow_relaxations,
+        ..Settings::default()
+    };
+    let target = target(mesh.clone());
+    deform_flow(&map, flowing, &target, &settings, &Progress::none()).unwrap()
+}
+
+#[test]
+fn flowing_quads_turn_along_the_crosses() {
+    let mesh = shapes::sphere(16);
+    let map = radial_map(&mesh);
+    let crosses = crosses(&mesh);
+    // The mean |sin 2θ| between edges and arms.
+    let misalignment = |result: &Deformed| {
+        let corners = result
+            .mesh
+            .faces()
+            .flat_map(|face| [0, 1, 2, 3].map(|i| [face[i], face[(i + 1) % 4]]));
+        let sines: Vec<f64> = corners
+            .map(|[a, b]| {
+                let edge = (result.mesh.position(b) - result.mesh.position(a)).normalize_or_zero();
+                let arm = crosses[map.locate(result.sphere[a.0 as usize]).face];
+                2.0 * (edge.dot(arm) * edge.cross(arm).length()).abs()
+            })
+            .collect();
+        sines.iter().sum::<f64>() / sines.len() as f64
+    };
+    let [before, after] = [0, 60].map(|n| misalignment(&flowed(&mesh, 0.1, n)));
+    assert!(after < 0.5 * before, "{after} {before}");
+}
+
+#[test]
+fn flowing_quads_stay_a_cover_without_inverted_quads() {
+    for seed in 0..4 {
+        let mesh = shapes::blob(seed, 10);
+        let result = flowed(&mesh, 0.1, 30);
+        assert_eq!(check_cover(&result.mesh, &result.sphere), Ok(()));
+        for face in result.mesh.faces() {
+            let p = [0, 1, 2, 3].map(|i| result.mesh.position(face[i]));
+            let normal = (p[2] - p[0]).cross(p[3] - p[1]);
+            for i in 0..4 {
+                let [a, b, c] = [p[(i + 3) % 4], p[i], p[(i + 1) % 4]];
+                assert!((c - b).cross(a - b).dot(normal) > 0.0, "{seed}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_flows_needs_a_cross_for_every_face() {
+    let mesh = shapes::sphere(6);
+    let map = radial_map(&mesh);
+    let quads = quad_sphere([3, 3, 3]);
+    let crosses = FaceMap::filled(5, DVec3::X);
+    let flowing = Flowing {
+        quads: &quads,
+        wanted: quads.positions(),
+        crosses: &crosses,
+    };
+    let target = target(mesh);
+    let result = deform_flow(
+        &map,
+        flowing,
+        &target,
+        &Settings::default(),
+        &Progress::none(),
+    );
+    let error = result.unwrap_err();
+    assert!(
+        matches!(error, Error::Counts { counts: [_, 5], .. }),
+        "{error}"
+    );
+}

@@ -1,0 +1,181 @@
+//! Relaxing quads that flow: edges turn along a field of crosses and get one length.
+
+use std::f64::consts::TAU;
+
+use glam::DVec3;
+
+use super::sheet::{Point, Sheet};
+use crate::mesh::{FaceMap, VertexId};
+use crate::progress::{Cancelled, Progress};
+
+/// Share of an edge's own length in the length that is wanted; the rest is the mean of all. At 0
+/// quads near irregular vertices are sheared, at 0.5 lengths even out too slowly.
+const OWN_LENGTH: f64 = 0.2;
+/// Share of the way that a vertex goes at once.
+const DAMPING: f64 = 0.7;
+/// Quality that no move may spoil: below it a move must make the worst face at the vertex better.
+const GUARDED_QUALITY: f64 = 0.7;
+/// Below this quality a vertex that is stuck tries places around it.
+const BAD_QUALITY: f64 = 0.45;
+/// How far away these places are, in mean edges.
+const REACHES: [f64; 4] = [0.4, 0.2, 0.1, 0.03];
+/// And in how many directions.
+const N_WAYS: u32 = 8;
+
+/// Shares of its way that a vertex that is led tries to go.
+const LEADS: [f64; 3] = [1.0, 0.5, 0.2];
+
+/// The neighbours of every vertex over edges.
+pub(super) struct Stars {
+    starts: Vec<u32>,
+    neighbours: Vec<VertexId>,
+}
+
+impl Stars {
+    /// The edges of a sheet; each is the first of one face at each of its ends.
+    pub fn new(sheet: &Sheet) -> Self {
+        let mut starts = vec![0];
+        let mut neighbours = Vec::with_capacity(4 * sheet.n_vertices());
+        for v in sheet.vertex_ids() {
+            neighbours.extend(sheet.ring(v).iter().map(|&face| {
+                let face = &sheet.faces()[face];
+                face.corner(face.find(v).expect("a ring's faces have the vertex"), 1)
+            }));
+            starts.push(neighbours.len() as u32);
+        }
+        Self { starts, neighbours }
+    }
+
+    /// The neighbours of one vertex.
+    pub fn of(&self, v: VertexId) -> &[VertexId] {
+        let [from, to] = [self.starts[v.0 as usize], self.starts[v.0 as usize + 1]];
+        &self.neighbours[from as usize..to as usize]
+    }
+}
+
+/// Moves every vertex that is not pinned, round by round, to the mean of where the edges to its
+/// neighbours want it: along the nearest arm of the cross, at the wanted length.
+///
+/// `crosses` holds one arm of the cross of every face of the map. Moves go along the surface; those
+/// that fold the sphere or spoil a face are halved once, then refused. Returns how many were.
+pub(super) fn follow(
+    sheet: &mut Sheet,
+    crosses: &FaceMap<DVec3>,
+    n_rounds: usize,
+    progress: &Progress,
+) -> Result<usize, Cancelled> {
+    let stars = Stars::new(sheet);
+    let mut n_refused = 0;
+    for round in 0..n_rounds {
+        progress.at(round as f64 / n_rounds as f64)?;
+        let length = sheet.mean_edge();
+        n_refused = 0;
+        for v in sheet.vertex_ids() {
+            if v.0 % 4096 == 0 {
+                progress.check()?;
+            }
+            if sheet.is_pinned(v) {
+                continue;
+            }
+            let step = DAMPING * wish(sheet, crosses, (v, stars.of(v)), length);
+            let moved = slide(sheet, v, step, GUARDED_QUALITY)
+                || slide(sheet, v, step * 0.5, GUARDED_QUALITY)
+                || mend(sheet, v, length);
+            n_refused += usize::from(!moved);
+        }
+    }
+    Ok(n_refused)
+}
+
+/// Moves a vertex along the surface if that neither folds the sphere nor brings the worst face
+/// below `enough`, or makes it better where it is there already.
+pub(super) fn slide(sheet: &mut Sheet, vertex: VertexId, step: DVec3, enough: f64) -> bool {
+    let now = *sheet.point(vertex);
+    let there = sheet.walked(vertex, now.position + step);
+    let before = sheet.badness(vertex, &now, enough);
+    let after = sheet.badness(vertex, &there, enough);
+    after <= before && sheet.try_move(vertex, there)
+}
+
+/// Moves a vertex of a bad face to the best of some places around it.
+fn mend(sheet: &mut Sheet, vertex: VertexId, length: f64) -> bool {
+    let now = *sheet.point(vertex);
+    if sheet.worst_quality(vertex, &now) >= BAD_QUALITY {
+        return false;
+    }
+    let (x, y) = now.normal.any_orthonormal_pair();
+    let places = REACHES.iter().flat_map(|reach| {
+        (0..N_WAYS).map(move |i| {
+            let (sin, cos) = (f64::from(i) * TAU / f64::from(N_WAYS)).sin_cos();
+            (x * cos + y * sin) * (reach * length)
+        })
+    });
+    let mut best = (sheet.badness(vertex, &now, GUARDED_QUALITY), now);
+    for step in places {
+        let there = sheet.walked(vertex, now.position + step);
+        let badness = sheet.badness(vertex, &there, GUARDED_QUALITY);
+        if badness < best.0 && sheet.covers(vertex, there.sphere) {
+            best = (badness, there);
+        }
+    }
+    best.1 != now && sheet.try_move(vertex, best.1)
+}
+
+/// Leads vertices along the surface to positions near it, as far as nothing folds on the sphere.
+pub(super) fn lead(
+    sheet: &mut Sheet,
+    wanted: &[DVec3],
+    n_rounds: usize,
+    progress: &Progress,
+) -> Result<(), Cancelled> {
+    for round in 0..n_rounds {
+        progress.at(round as f64 / n_rounds as f64)?;
+        for (v, &wanted) in sheet.vertex_ids().zip(wanted) {
+            let way = wanted - sheet.position(v);
+            for share in LEADS {
+                let there = sheet.walked(v, sheet.position(v) + way * share);
+                if sheet.try_move(v, there) {
+                    break;
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+fn along(step: DVec3, at: &Point) -> DVec3 {
+    step - at.normal * step.dot(at.normal)
+}
+
+/// The way along the surface to the mean of what the edges of a vertex want.
+fn wish(
+    sheet: &Sheet,
+    crosses: &FaceMap<DVec3>,
+    (vertex, star): (VertexId, &[VertexId]),
+    length: f64,
+) -> DVec3 {
+    let here = sheet.point(vertex);
+    let sum: DVec3 = star
+        .iter()
+        .map(|&other| {
+            let there = sheet.point(other);
+            let edge = here.position - there.position;
+            let size = OWN_LENGTH * edge.length() + (1.0 - OWN_LENGTH) * length;
+            let arms =
+                [here, there].map(|end| nearest_arm(crosses[end.place.face], end.normal, edge));
+            there.position + (arms[0] + arms[1]) * (0.5 * size)
+        })
+        .sum();
+    along(sum / star.len() as f64 - here.position, here)
+}
+
+/// The arm of a cross that points most along an edge.
+fn nearest_arm(arm: DVec3, normal: DVec3, edge: DVec3) -> DVec3 {
+    let other = normal.cross(arm);
+    let [a, b] = [edge.dot(arm), edge.dot(other)];
+    if a.abs() > b.abs() {
+        arm * a.signum()
+    } else {
+        other * b.signum()
+    }
+}
