@@ -5,5 +5,6 @@
 //! [`wish`] is the flat map that follows the field best, in units of a quad's edge.
 
 pub mod field;
+pub mod place;
 pub mod singularities;
 pub mod wish;
