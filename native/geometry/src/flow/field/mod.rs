@@ -11,6 +11,7 @@
 //! ```
 
 mod charts;
+mod settle;
 mod shape;
 mod smooth;
 mod turns;
@@ -25,7 +26,8 @@ use crate::progress::{Cancelled, Progress};
 use crate::sparse::NotPositiveDefinite;
 
 pub use charts::{Charts, halfedges};
-pub use shape::{Axes, axes};
+pub use settle::settle;
+pub use shape::{Axes, axes, in_chart};
 pub use turns::quarter_turn;
 
 /// How the field follows the shape.
@@ -57,6 +59,10 @@ pub struct OrientationField {
     pub turns: HalfedgeMap<u8>,
     /// k of each vertex: its cone angle is (4 − k) · 90°. The sum is 8.
     pub indices: VertexMap<i32>,
+    /// How many quarters the twin's cross is ahead of the halfedge's, beyond −r: how unsmooth the
+    /// field is there, opposite for twins. Around a vertex, counter-clockwise over what is crossed,
+    /// the sum of them less the angles of the corners is k − 4 quarters.
+    pub residuals: HalfedgeMap<f64>,
 }
 
 /// Why there is no field.
@@ -104,7 +110,8 @@ pub fn orient(
     let pulls = shape::pulls(mesh, &charts, &axes, settings);
     let crosses = smooth::smooth(mesh, &charts, &pulls, progress)?;
     let angles: FaceMap<f64> = crosses.iter().map(|z| z.to_angle() / 4.0).collect();
-    let (turns, indices) = turns::match_crosses(mesh, &charts, &angles);
+    let (turns, residuals) = turns::match_crosses(mesh, &charts, &angles);
+    let indices = turns::indices(mesh, &charts, &residuals);
     let directions = axes
         .iter()
         .zip(&angles)
@@ -114,6 +121,7 @@ pub fn orient(
         directions,
         turns,
         indices,
+        residuals,
     };
     debug_assert_eq!(field.check(mesh), Ok(()));
     Ok(field)

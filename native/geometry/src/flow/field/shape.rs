@@ -46,6 +46,11 @@ pub fn axes(mesh: &TriangleMesh) -> FaceMap<Axes> {
     mesh.face_ids().map(axes).collect()
 }
 
+/// A tangent direction in a face's chart, as a unit vector.
+pub fn in_chart(direction: DVec3, axes: &Axes) -> DVec2 {
+    DVec2::new(direction.dot(axes.u), direction.dot(axes.v)).normalize_or(DVec2::X)
+}
+
 /// What every face asks: principal directions with weight min(1, alignment · d · |κ₁ − κ₂|)²,
 /// d the root of the mean face area, and edges sharper than `sharp_angle` with a weight of 4.
 pub fn pulls(

@@ -89,3 +89,47 @@ fn a_cancelled_field_is_not_made() {
     );
     assert_eq!(cancelled, Err(FieldError::Cancelled(Cancelled)));
 }
+
+#[test]
+fn residuals_and_corners_make_the_indices() {
+    for (name, mesh) in shapes::closed(10) {
+        let mut field = field_of(&mesh);
+        let charts = Charts::new(&mesh);
+        assert_eq!(
+            turns::indices(&mesh, &charts, &field.residuals),
+            field.indices
+        );
+        let before = total_unrest(&field);
+        settle(&mesh, &mut field, &Settings::default(), &Progress::none()).unwrap();
+        assert_eq!(
+            turns::indices(&mesh, &charts, &field.residuals),
+            field.indices
+        );
+        assert!(total_unrest(&field) < 1.1 * before, "{name}");
+    }
+}
+
+fn total_unrest(field: &OrientationField) -> f64 {
+    field.residuals.iter().map(|r| r * r).sum()
+}
+
+#[test]
+fn crosses_follow_a_singularity_that_was_moved() {
+    let mesh = shapes::sphere(12);
+    let mut field = field_of(&mesh);
+    let size = crate::measure::total_area(&mesh).sqrt();
+    crate::flow::singularities::tidy(&mesh, &mut field, 0.3 * size);
+    let before = total_unrest(&field);
+    settle(&mesh, &mut field, &Settings::default(), &Progress::none()).unwrap();
+    assert!(total_unrest(&field) < before);
+    // The residuals are still those of the directions, up to whole quarters.
+    let axes = axes(&mesh);
+    let angles = mesh
+        .face_ids()
+        .map(|f| in_chart(field.directions[f], &axes[f]).to_angle());
+    let (_, nearest) = turns::match_crosses(&mesh, &Charts::new(&mesh), &angles.collect());
+    for (a, b) in field.residuals.iter().zip(&nearest) {
+        let off = (a - b).rem_euclid(1.0);
+        assert!(off.min(1.0 - off) < 1e-9, "{a} {b}");
+    }
+}

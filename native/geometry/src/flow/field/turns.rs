@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use glam::DVec2;
 
 use super::charts::Charts;
-use crate::mesh::{FaceMap, HalfedgeMap, Id, TriangleMesh, VertexMap};
+use crate::mesh::{FaceMap, HalfedgeMap, TriangleMesh, VertexMap};
 
 /// i^r w: a vector turned by r quarters, exactly.
 pub fn quarter_turn(w: DVec2, quarters: u8) -> DVec2 {
@@ -17,17 +17,16 @@ pub fn quarter_turn(w: DVec2, quarters: u8) -> DVec2 {
     }
 }
 
-/// The turns across all halfedges and the indices of all vertices, from the angles of the crosses
+/// The turns across all halfedges, and the residuals in quarters, from the angles of the crosses
 /// in their charts.
 ///
 /// A halfedge's vector is w in the frame of its face and −i^r w in that of its twin's. The angle
-/// between the two crosses is split into the nearest number of quarters and a residual; around a
-/// vertex the residuals and the missing angle make a whole number of quarters: its index.
+/// between the two crosses is split into the nearest number of quarters, −r, and a residual.
 pub fn match_crosses(
     mesh: &TriangleMesh,
     charts: &Charts,
     angles: &FaceMap<f64>,
-) -> (HalfedgeMap<u8>, VertexMap<i32>) {
+) -> (HalfedgeMap<u8>, HalfedgeMap<f64>) {
     let n_halfedges = 3 * mesh.n_faces();
     let mut turns = HalfedgeMap::filled(n_halfedges, 0);
     let mut residuals = HalfedgeMap::filled(n_halfedges, 0.0);
@@ -43,14 +42,19 @@ pub fn match_crosses(
         turns[h] = (-(quarters as i64)).rem_euclid(4) as u8;
         turns[twin] = (4 - turns[h]) % 4;
     }
-    let mut quarters = vec![4.0; mesh.n_vertices()];
+    (turns, residuals)
+}
+
+/// The index of every vertex: around it, the residuals and the missing angle make a whole number
+/// of quarters.
+pub fn indices(
+    mesh: &TriangleMesh,
+    charts: &Charts,
+    residuals: &HalfedgeMap<f64>,
+) -> VertexMap<i32> {
+    let mut quarters = VertexMap::filled(mesh.n_vertices(), 4.0);
     for h in mesh.halfedge_ids() {
-        let missing = residuals[h.prev()] - charts.angle(h) / FRAC_PI_2;
-        quarters[mesh.origin(h).index()] += missing;
+        quarters[mesh.origin(h)] += residuals[h.prev()] - charts.angle(h) / FRAC_PI_2;
     }
-    let indices = quarters
-        .into_iter()
-        .map(|q: f64| q.round() as i32)
-        .collect();
-    (turns, indices)
+    quarters.iter().map(|q: &f64| q.round() as i32).collect()
 }

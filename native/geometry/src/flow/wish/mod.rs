@@ -8,10 +8,10 @@
 mod close;
 mod disk;
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use thiserror::Error;
 
-use crate::flow::field::{Axes, Charts, OrientationField, axes, quarter_turn};
+use crate::flow::field::{Charts, OrientationField, axes, in_chart, quarter_turn};
 use crate::mesh::{FaceMap, HalfedgeMap, TriangleMesh};
 use crate::progress::{Cancelled, Progress};
 use crate::sparse::{HermitianMatrix, NotPositiveDefinite};
@@ -76,10 +76,9 @@ pub fn wish(
 /// The directions of the field in the faces' charts.
 fn arms(mesh: &TriangleMesh, field: &OrientationField) -> FaceMap<DVec2> {
     let axes = axes(mesh);
-    let arm = |(axes, direction): (&Axes, &DVec3)| {
-        DVec2::new(direction.dot(axes.u), direction.dot(axes.v)).normalize_or(DVec2::X)
-    };
-    axes.iter().zip(&field.directions).map(arm).collect()
+    let both = field.directions.iter().zip(&axes);
+    both.map(|(direction, axes)| in_chart(*direction, axes))
+        .collect()
 }
 
 /// The points of the disk.
