@@ -4,6 +4,9 @@
 //! much or too little around a vertex, the result has an irregular vertex ([`singularities`]). The
 //! [`wish`] is the flat map that follows the field best, in units of a quad's edge.
 
+pub mod complex;
+pub mod cones;
+pub mod conformal;
 pub mod field;
 pub mod place;
 pub mod singularities;
