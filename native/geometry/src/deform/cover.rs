@@ -17,6 +17,12 @@ const FINEST: u32 = 24;
 /// Faces that a sample crosses at most to find its own: between two rounds it crosses one or two.
 const LONGEST_WALK: usize = 64;
 
+/// A face that covers this many times its own area begins to count as lying over a tip; below 1.2
+/// the roughness of the samples would count.
+const LEAST_EXCESS: f64 = 1.3;
+/// And from this many times on it does nothing but shrink there.
+const FULL_EXCESS: f64 = 2.0;
+
 /// A piece of the surface.
 struct Sample {
     direction: DVec3,
@@ -84,6 +90,16 @@ impl Cover {
         for part in self.parts.as_mut_slice() {
             part.centre /= part.area.max(f64::MIN_POSITIVE);
         }
+    }
+
+    /// How much a face hides: 0 where it covers about its own area, 1 over a tip.
+    pub fn hidden(&self, sheet: &Sheet, face: FaceId) -> f64 {
+        ((self.excess(sheet, face) - LEAST_EXCESS) / (FULL_EXCESS - LEAST_EXCESS)).clamp(0.0, 1.0)
+    }
+
+    /// How many times its own area a face covers.
+    pub fn excess(&self, sheet: &Sheet, face: FaceId) -> f64 {
+        self.parts[face].area / sheet.area(face).max(f64::MIN_POSITIVE)
     }
 
     /// What a face covers; nothing when no sample hit it.

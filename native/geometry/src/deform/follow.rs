@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
+use super::cover::Cover;
 use super::sheet::{Point, Sheet};
 use crate::mesh::{FaceMap, VertexId};
 use crate::progress::{Cancelled, Progress};
@@ -22,6 +23,13 @@ const REACHES: [f64; 4] = [0.4, 0.2, 0.1, 0.03];
 /// And in how many directions.
 const N_WAYS: u32 = 8;
 
+/// How many rounds what faces cover stays as it was measured.
+const ROUNDS_PER_COVER: usize = 4;
+/// A face that covers this many times its own area begins to count as lying over a tip, and counts
+/// fully at twice that; below 1.5 every bent face would shrink, and edges become uneven.
+const LEAST_EXCESS: f64 = 2.0;
+/// How much of a step at most goes to the middle of what a face hides.
+const CLIMB: f64 = 0.5;
 /// Shares of its way that a vertex that is led tries to go.
 const LEADS: [f64; 3] = [1.0, 0.5, 0.2];
 
@@ -60,7 +68,7 @@ impl Stars {
 /// that fold the sphere or spoil a face are halved once, then refused. Returns how many were.
 pub(super) fn follow(
     sheet: &mut Sheet,
-    crosses: &FaceMap<DVec3>,
+    (crosses, cover): (&FaceMap<DVec3>, &mut Cover),
     n_rounds: usize,
     progress: &Progress,
 ) -> Result<usize, Cancelled> {
@@ -69,6 +77,9 @@ pub(super) fn follow(
     for round in 0..n_rounds {
         progress.at(round as f64 / n_rounds as f64)?;
         let length = sheet.mean_edge();
+        if round % ROUNDS_PER_COVER == 0 {
+            cover.update(sheet);
+        }
         n_refused = 0;
         for v in sheet.vertex_ids() {
             if v.0 % 4096 == 0 {
@@ -77,7 +88,8 @@ pub(super) fn follow(
             if sheet.is_pinned(v) {
                 continue;
             }
-            let step = DAMPING * wish(sheet, crosses, (v, stars.of(v)), length);
+            let step = wish(sheet, crosses, (v, stars.of(v)), length);
+            let step = DAMPING * climb(sheet, cover, v, step);
             let moved = slide(sheet, v, step, GUARDED_QUALITY)
                 || slide(sheet, v, step * 0.5, GUARDED_QUALITY)
                 || mend(sheet, v, length);
@@ -167,6 +179,24 @@ fn wish(
         })
         .sum();
     along(sum / star.len() as f64 - here.position, here)
+}
+
+/// Turns a vertex's step towards what the faces at it hide: a face that covers much more than it
+/// seems to lies over the tip of a limb, and its corners have slipped off.
+fn climb(sheet: &Sheet, cover: &Cover, vertex: VertexId, step: DVec3) -> DVec3 {
+    let here = sheet.point(vertex);
+    let most = sheet
+        .ring(vertex)
+        .iter()
+        .map(|&face| (cover.excess(sheet, face), face));
+    let Some((excess, face)) = most.max_by(|a, b| a.0.total_cmp(&b.0)) else {
+        return step;
+    };
+    let hidden = ((excess - LEAST_EXCESS) / LEAST_EXCESS).clamp(0.0, 1.0);
+    step.lerp(
+        along(cover.part(face).centre - here.position, here),
+        CLIMB * hidden,
+    )
 }
 
 /// The arm of a cross that points most along an edge.

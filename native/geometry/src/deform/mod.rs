@@ -56,6 +56,8 @@ pub struct Settings {
     pub n_straddles: usize,
     /// How strongly vertices are held where they are while faces are fitted.
     pub anchor: Anchor,
+    /// The same for quads that flow, which lie along the shape already.
+    pub flow_anchor: Anchor,
 }
 
 impl Default for Settings {
@@ -66,6 +68,10 @@ impl Default for Settings {
             n_flow_relaxations: 60,
             n_straddles: 2,
             anchor: Anchor::default(),
+            flow_anchor: Anchor {
+                along: 0.2,
+                ..Anchor::default()
+            },
         }
     }
 }
@@ -218,9 +224,10 @@ pub fn deform_flow(
         N_LEADS,
         &progress.part("", 0.0, 0.05),
     )?;
+    let mut cover = Cover::new(map, &sheet);
     report.n_stuck = follow::follow(
         &mut sheet,
-        flowing.crosses,
+        (flowing.crosses, &mut cover),
         settings.n_flow_relaxations,
         &part,
     )?;
@@ -228,7 +235,7 @@ pub fn deform_flow(
     report.n_unprojected = project::project(&mut sheet, target, reach, progress)?;
     for round in 0..settings.n_straddles {
         progress.at(0.7 + 0.3 * round as f64 / settings.n_straddles as f64)?;
-        straddle::straddle(&mut sheet, target, (reach, settings.anchor), progress)?;
+        straddle::straddle(&mut sheet, target, (reach, settings.flow_anchor), progress)?;
     }
     let (mesh, sphere) = sheet.into_mesh();
     debug_assert_eq!(check_cover(&mesh, &sphere), Ok(()));

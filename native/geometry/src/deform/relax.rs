@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::cover::{Cover, Part};
+use super::cover::Cover;
 use super::sheet::{Face, Sheet};
 use crate::mesh::VertexId;
 use crate::progress::{Cancelled, Progress};
@@ -13,12 +13,6 @@ const GUARDED_QUALITY: f64 = 0.35;
 /// Share of the wanted size in a face's wish; the rest is the size it has. At 1 faces on stretched
 /// limbs push each other into slivers, at 0.5 sizes even out too slowly.
 const SIZE_WISH: f64 = 0.8;
-/// A face that covers this many times its own area begins to count as lying over a tip; below 1.2
-/// the roughness of the samples would count.
-const LEAST_EXCESS: f64 = 1.3;
-/// And from this many times on it does nothing but shrink there.
-const FULL_EXCESS: f64 = 2.0;
-
 /// Moves every vertex that is not pinned `n_rounds` times to where its faces would be regular polygons of equal size.
 ///
 /// Each face pulls its corners towards the regular polygon of its own centre and turn (shape
@@ -66,18 +60,10 @@ fn slide(sheet: &mut Sheet, vertex: VertexId, step: DVec3) -> bool {
 
 /// The circumradius of a regular face when all have equal area.
 fn wanted_radius(sheet: &Sheet) -> [f64; 2] {
-    let areas = sheet.faces().iter().map(|face| area(sheet, face));
+    let areas = sheet.faces().ids().map(|face| sheet.area(face));
     let mean = areas.sum::<f64>() / sheet.faces().len().max(1) as f64;
     // A triangle of circumradius r has area 3√3/4 r², a square 2 r².
     [(mean * 4.0 / 27.0f64.sqrt()).sqrt(), (mean / 2.0).sqrt()]
-}
-
-fn area(sheet: &Sheet, face: &Face) -> f64 {
-    let p = |i| sheet.position(face.corner(0, i));
-    match face.corners().len() {
-        3 => (p(1) - p(0)).cross(p(2) - p(0)).length() / 2.0,
-        _ => (p(2) - p(0)).cross(p(3) - p(1)).length() / 2.0,
-    }
 }
 
 /// The way to the mean of where the faces at a vertex want it, along the surface.
@@ -87,11 +73,23 @@ fn wish(sheet: &Sheet, cover: Option<&Cover>, vertex: VertexId, radius: [f64; 2]
     let sum = ring.iter().fold(DVec3::ZERO, |sum, &id| {
         let face = &sheet.faces()[id];
         let corner = face.find(vertex).expect("a ring's faces have the vertex");
-        let part = cover.map(|cover| *cover.part(id)).unwrap_or_default();
-        sum + regular_corner(sheet, (face, corner), part, radius)
+        let over = cover.map(|cover| Over {
+            hidden: cover.hidden(sheet, id),
+            excess: cover.excess(sheet, id),
+            centre: cover.part(id).centre,
+        });
+        sum + regular_corner(sheet, (face, corner), over.unwrap_or_default(), radius)
     });
     let step = sum / ring.len() as f64 - here.position;
     step - here.normal * step.dot(here.normal)
+}
+
+/// What a face lies over.
+#[derive(Clone, Copy, Default)]
+struct Over {
+    hidden: f64,
+    excess: f64,
+    centre: DVec3,
 }
 
 /// Where a corner goes when its face becomes the nearest regular polygon of about the wanted size.
@@ -101,7 +99,7 @@ fn wish(sheet: &Sheet, cover: Option<&Cover>, vertex: VertexId, radius: [f64; 2]
 fn regular_corner(
     sheet: &Sheet,
     (face, corner): (&Face, usize),
-    part: Part,
+    over: Over,
     radius: [f64; 2],
 ) -> DVec3 {
     let at = |steps| sheet.point(face.corner(corner, steps));
@@ -119,10 +117,9 @@ fn regular_corner(
         let centre = (here.position + next.position + before.position + far) / 4.0;
         (centre, (here.position - far + turned) / 4.0, radius[1])
     };
-    let excess = part.area / area(sheet, face).max(f64::MIN_POSITIVE);
-    let hidden = ((excess - LEAST_EXCESS) / (FULL_EXCESS - LEAST_EXCESS)).clamp(0.0, 1.0);
-    let centre = centre.lerp(part.centre, hidden);
-    let wanted = wanted * (1.0 - hidden + hidden / excess.max(1.0).sqrt());
+    let hidden = over.hidden;
+    let centre = centre.lerp(over.centre, hidden);
+    let wanted = wanted * (1.0 - hidden + hidden / over.excess.max(1.0).sqrt());
     let length = spoke.length();
     let size = SIZE_WISH * wanted + (1.0 - SIZE_WISH) * length;
     centre + spoke * (size / length.max(f64::MIN_POSITIVE))

@@ -154,6 +154,15 @@ impl<'a> Sheet<'a> {
         self.rings[a].iter().copied().find(leaves)
     }
 
+    /// The area of a face, flattened.
+    pub fn area(&self, face: FaceId) -> f64 {
+        let p = |i| self.position(self.faces[face].corner(0, i));
+        match self.faces[face].corners().len() {
+            3 => (p(1) - p(0)).cross(p(2) - p(0)).length() / 2.0,
+            _ => (p(2) - p(0)).cross(p(3) - p(1)).length() / 2.0,
+        }
+    }
+
     /// The mean length of all edges.
     pub fn mean_edge(&self) -> f64 {
         let lengths = |face: &Face| {
