@@ -5,8 +5,10 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const FLOORS: [&[&str]; 4] = [
-    &["mesh", "progress", "random", "sparse"],
+/// From the ground up: what everything may ask whether to go on lies under the numbered floors.
+const FLOORS: [&[&str]; 5] = [
+    &["progress"],
+    &["mesh", "random", "sparse"],
     &["hierarchy", "measure", "nearest", "sphere_map"],
     &[
         "clean", "decimate", "deform", "embed", "flow", "score", "sphere", "transfer",

@@ -51,7 +51,7 @@ fn every_closed_shape_gives_a_closed_mesh_of_the_asked_size() {
     for (name, mesh) in common::closed(16) {
         for kind in [Kind::Triangles, Kind::Quads] {
             let result = run(&common::polygons(&mesh), &settings(600, kind)).unwrap();
-            let found = topology(&result.mesh);
+            let found = topology(&result.mesh, &Progress::none()).unwrap();
             assert!(found.closed && found.manifold, "{name} {kind:?}: {found:?}");
             assert_eq!(
                 (found.n_components, found.genus),
@@ -116,7 +116,12 @@ fn parts_share_the_faces_by_area() {
         &common::polygons(&common::capsule(8.0, 10)),
     );
     let result = run(&both, &settings(1200, Kind::Quads)).unwrap();
-    assert_eq!(topology(&result.mesh).n_components, 2);
+    assert_eq!(
+        topology(&result.mesh, &Progress::none())
+            .unwrap()
+            .n_components,
+        2
+    );
     let shares: Vec<_> = result
         .report
         .parts

@@ -100,7 +100,7 @@ proptest! {
         let made = remesh(&common::polygons(&mesh), &settings);
         let corners = if settings.kind == Kind::Quads { 4 } else { 3 };
         prop_assert!(made.mesh.faces().all(|face| face.len() == corners));
-        let topology = measure::topology(&made.mesh);
+        let topology = measure::topology(&made.mesh, &Progress::none()).unwrap();
         prop_assert_eq!((topology.closed, topology.genus), (true, Some(0)));
         prop_assert_eq!(topology.n_components, 1);
         prop_assert_eq!(check_cover(&made.mesh, &made.sphere), Ok(()));
@@ -129,7 +129,7 @@ proptest! {
         let settings = quick(faces, Kind::Quads);
         let made = pipeline::remesh(input, &settings, &Solver::default(), &Progress::none())
             .expect("separate balls can be done");
-        prop_assert_eq!(measure::topology(&made.mesh).n_components, n_parts);
+        prop_assert_eq!(measure::topology(&made.mesh, &Progress::none()).unwrap().n_components, n_parts);
         let given = made.materials.expect("materials were given");
         prop_assert_eq!(given.len(), made.mesh.n_faces());
         for (f, &material) in given.iter().enumerate() {
@@ -148,7 +148,7 @@ proptest! {
         let made =
             pipeline::remesh(Input::new(&mesh), &settings, &Solver::default(), &Progress::none());
         if let Ok(made) = made {
-            let topology = measure::topology(&made.mesh);
+            let topology = measure::topology(&made.mesh, &Progress::none()).unwrap();
             prop_assert_eq!((topology.closed, topology.genus), (true, Some(0)));
             prop_assert!(made.mesh.positions().iter().all(|p| p.is_finite()));
         }

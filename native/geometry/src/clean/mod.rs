@@ -128,30 +128,39 @@ fn attempt(input: &PolygonMesh, reach: Reach, progress: &Progress) -> Result<Cle
     progress.at(0.6)?;
     check_area(&triangulated, input)?;
     count_vertices(&first, &polygons, &mut report);
-    if let Some(cleaned) = already_solid(&triangulated, report) {
+    progress.at(0.65)?;
+    if let Some(cleaned) = already_solid(&triangulated, report, progress)? {
         return Ok(cleaned);
     }
     progress.at(0.7)?;
     let mended = mend::mend(polygons, triangulated, &mut report, progress)?;
     let (positions, faces) = compact(&mended.positions, mended.faces);
     Ok(Cleaned {
-        mesh: TriangleMesh::new(positions, faces)?,
+        mesh: TriangleMesh::build(positions, faces, progress)??,
         source: FaceMap::from_vec(mended.source),
         report,
     })
 }
 
 /// The mesh if it has nothing to mend and no border, which is told fastest by trying.
-fn already_solid(triangulated: &Triangulated, report: Report) -> Option<Cleaned> {
+fn already_solid(
+    triangulated: &Triangulated,
+    report: Report,
+    progress: &Progress,
+) -> Result<Option<Cleaned>, Cancelled> {
     let (positions, faces) = compact(&triangulated.positions, triangulated.faces.clone());
-    let mesh = TriangleMesh::new(positions, faces).ok()?;
+    progress.check()?;
+    let Ok(mesh) = TriangleMesh::build(positions, faces, progress)? else {
+        return Ok(None);
+    };
     let source = FaceMap::from_vec(triangulated.source.clone());
     let cleaned = Cleaned {
         mesh,
         source,
         report,
     };
-    Some(cleaned).filter(|cleaned| cleaned.mesh.is_closed() && !has_doubled(&cleaned.mesh))
+    let is_solid = cleaned.mesh.is_closed() && !has_doubled(&cleaned.mesh);
+    Ok(is_solid.then_some(cleaned))
 }
 
 /// Whether two triangles lie back to back, with all three edges in common.

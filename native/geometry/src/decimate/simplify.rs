@@ -124,6 +124,7 @@ impl Simplifying {
     /// The start; a user who cancels waits for one of its passes over the mesh at most.
     fn new(mesh: &TriangleMesh, progress: &Progress) -> Result<Self, Cancelled> {
         let frame = Frame::of_mesh(mesh);
+        progress.check()?;
         let points = frame.points(mesh);
         progress.check()?;
         let mut quadrics = vertex_quadrics(mesh, &points, progress)?;

@@ -70,6 +70,7 @@ pub fn collapse_to_tetrahedron(
     progress: &Progress,
 ) -> Result<CollapseHierarchy, CollapseError> {
     check_topology(&mesh)?;
+    progress.check()?;
     let mut collapsing = Collapsing::new(&mesh, progress)?;
     while collapsing.n_left > 4 {
         progress.at(1.0 - (collapsing.n_left - 4) as f64 / mesh.n_vertices() as f64)?;
@@ -114,6 +115,7 @@ impl Collapsing {
     fn new(mesh: &TriangleMesh, progress: &Progress) -> Result<Self, Cancelled> {
         let n_left = mesh.n_vertices();
         let points = Frame::of_mesh(mesh).points(mesh);
+        progress.check()?;
         let level = Level {
             rings: Rings::of_mesh(mesh, progress)?,
             quadrics: vertex_quadrics(mesh, &points, progress)?,

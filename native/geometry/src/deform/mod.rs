@@ -144,10 +144,13 @@ pub fn deform(
     settings: &Settings,
     progress: &Progress,
 ) -> Result<Deformed, Error> {
+    progress.check()?;
     check_primitive(primitive)?;
+    progress.check()?;
     let mut report = Report::default();
     let mut sheet = Sheet::new(map, vertex_normals(map.mesh()), primitive);
     let mut cover = (primitive.n_quads() > 0).then(|| Cover::new(map, &sheet));
+    progress.check()?;
     let n = match cover {
         None => settings.n_relaxations,
         Some(_) => settings.n_quad_relaxations,

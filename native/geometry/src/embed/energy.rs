@@ -6,6 +6,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::mesh::{TriangleMesh, VertexId, VertexMap};
+use crate::progress::{Cancelled, Progress};
 use crate::sphere_map::triple_product;
 
 /// The smallest area ratio that the energy tells apart; folds count as this.
@@ -20,10 +21,22 @@ const CHUNK: usize = 512;
 /// least 10⁻³: folds count as that) and g = Σ cot · |opposite edge|² / 2A its Dirichlet density, so
 /// that an isometry has log 5 ≈ 1.609 everywhere, the least there is. Triangles without area are left out.
 pub fn distortion(mesh: &TriangleMesh, sphere: &VertexMap<DVec3>) -> f64 {
+    try_distortion(mesh, sphere, &Progress::none()).expect("nobody cancels")
+}
+
+/// The same for large meshes: it can be cancelled.
+///
+/// # Errors
+/// When cancelled.
+pub(super) fn try_distortion(
+    mesh: &TriangleMesh,
+    sphere: &VertexMap<DVec3>,
+    progress: &Progress,
+) -> Result<f64, Cancelled> {
     let size = mesh.positions().iter().map(|p| p.abs().max_element());
     let size = size.fold(f64::MIN_POSITIVE, f64::max);
     let corners = |f: [VertexId; 3]| f.map(|v| mesh.position(v) / size);
-    let total = sum_over_faces(mesh, |f| double_area(corners(f)));
+    let total = sum_over_faces(mesh, |f| double_area(corners(f)), progress)?;
     let scale = 8.0 * PI / total;
     let weighted_log = |f: [VertexId; 3]| {
         let surface = corners(f);
@@ -34,7 +47,7 @@ pub fn distortion(mesh: &TriangleMesh, sphere: &VertexMap<DVec3>) -> f64 {
             0.0
         }
     };
-    sum_over_faces(mesh, weighted_log) / total
+    Ok(sum_over_faces(mesh, weighted_log, progress)? / total)
 }
 
 /// log(1 + g (1 + 1/d²)) of one triangle, areas on the surface scaled; not finite without area.
@@ -55,10 +68,17 @@ fn double_area([a, b, c]: [DVec3; 3]) -> f64 {
 }
 
 /// A sum that is the same for any number of threads: over chunks, then over their sums.
-fn sum_over_faces(mesh: &TriangleMesh, value: impl Fn([VertexId; 3]) -> f64 + Sync) -> f64 {
-    let chunks = mesh.faces().par_chunks(CHUNK);
-    let sums: Vec<f64> = chunks
-        .map(|faces| faces.iter().map(|&f| value(f)).sum())
-        .collect();
-    sums.iter().sum()
+fn sum_over_faces(
+    mesh: &TriangleMesh,
+    value: impl Fn([VertexId; 3]) -> f64 + Sync,
+    progress: &Progress,
+) -> Result<f64, Cancelled> {
+    // After a cancellation nobody asks for the sum.
+    let sum = |faces: &[[VertexId; 3]]| match progress.check() {
+        Ok(()) => faces.iter().map(|&f| value(f)).sum(),
+        Err(Cancelled) => 0.0,
+    };
+    let sums: Vec<f64> = mesh.faces().par_chunks(CHUNK).map(sum).collect();
+    progress.check()?;
+    Ok(sums.iter().sum())
 }

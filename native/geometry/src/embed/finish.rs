@@ -29,9 +29,9 @@ pub fn finish(
     (settings, stiffness): (&Settings, Stiffness),
     progress: &Progress,
 ) -> Result<Finish, Cancelled> {
-    let mut partial = Partial::whole(mesh, sphere);
+    let mut partial = Partial::whole(mesh, sphere, progress)?;
     let positions = to_size_one(mesh.positions());
-    let mut level = Level::new(&partial, &positions, stiffness.finish());
+    let mut level = Level::new(&partial, &positions, stiffness.finish(), progress)?;
     let (mut n_relaxations, mut n_sweeps, mut complete) = (0, 0, false);
     let mut whole = None;
     while n_sweeps < settings.max_sweeps && !complete {

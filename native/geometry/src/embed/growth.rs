@@ -65,22 +65,37 @@ pub enum GrowError {
 
 impl Growth {
     /// The coarsest level of a hierarchy.
-    pub fn tetrahedron(hierarchy: &CollapseHierarchy, stiffness: Stiffness) -> Self {
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn tetrahedron(
+        hierarchy: &CollapseHierarchy,
+        stiffness: Stiffness,
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
         let partial = Partial::tetrahedron(hierarchy);
-        Self::new(partial, hierarchy.mesh(), stiffness)
+        Self::new(partial, hierarchy.mesh(), stiffness, progress)
     }
 
     /// A map of (parts of) a mesh.
-    pub fn new(partial: Partial, mesh: &TriangleMesh, stiffness: Stiffness) -> Self {
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn new(
+        partial: Partial,
+        mesh: &TriangleMesh,
+        stiffness: Stiffness,
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
         let positions = to_size_one(mesh.positions());
         let metric = stiffness.metric(partial.n_there());
-        Self {
-            metric: Level::new(&partial, &positions, metric).metric(),
+        Ok(Self {
+            metric: Level::new(&partial, &positions, metric, progress)?.metric(),
             positions,
             partial,
             n_relaxations: 0,
             stiffness,
-        }
+        })
     }
 
     /// Undoes independent collapses: all places are found before the first is taken.
@@ -92,11 +107,16 @@ impl Growth {
         collapses: &[Collapse<'_>],
         progress: &Progress,
     ) -> Result<(), GrowError> {
-        let place = |&collapse: &Collapse<'_>| self.place(collapse);
+        // After a cancellation the rest of the places is not looked for, nor used.
+        let place = |&collapse: &Collapse<'_>| {
+            let goes_on = progress.check().is_ok();
+            goes_on.then(|| self.place(collapse)).flatten()
+        };
         let chunks = collapses.par_iter().with_min_len(LEAST_CHUNK);
         let places: Vec<Option<DVec3>> = chunks.map(place).collect();
         let mut crowded = Vec::new();
         for (&collapse, place) in collapses.iter().zip(places) {
+            progress.check()?;
             match place {
                 Some(position) => self.insert(collapse, position),
                 None => crowded.push(collapse),
@@ -189,7 +209,7 @@ impl Growth {
         metric: Metric,
         progress: &Progress,
     ) -> Result<(), Cancelled> {
-        let mut level = Level::new(&self.partial, &self.positions, metric);
+        let mut level = Level::new(&self.partial, &self.positions, metric, progress)?;
         self.metric = level.metric();
         let mut whole = None;
         for _ in 0..limits.max_sweeps {

@@ -9,6 +9,7 @@ use super::fan::Rest;
 use super::partial::Partial;
 use super::rest::Metric;
 use crate::mesh::{Id, VertexId};
+use crate::progress::{Cancelled, Progress};
 
 /// How many vertices a thread takes at once: some 20 µs of relaxation. Sums are made per chunk, so
 /// that they do not depend on the number of threads.
@@ -39,7 +40,15 @@ pub struct Chunk {
 
 impl Layout {
     /// Lays out the mesh that is on the sphere, with its rest shapes in the given metric.
-    pub fn new(partial: &Partial, positions: &[DVec3], metric: Metric) -> Self {
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn new(
+        partial: &Partial,
+        positions: &[DVec3],
+        metric: Metric,
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
         let (order, colours) = by_colour(partial);
         let mut slots = vec![u32::MAX; partial.sphere.len()];
         for (slot, &v) in order.iter().enumerate() {
@@ -55,12 +64,15 @@ impl Layout {
         };
         let chunk = |&piece: &&[VertexId]| {
             let mut chunk = Chunk::new(piece.len());
+            // A chunk that stays empty after a cancellation is never seen.
+            let piece = if progress.check().is_ok() { piece } else { &[] };
             for &v in piece {
                 chunk.push(v, partial.ring(v), (&slots, positions), unscaled);
             }
             chunk
         };
         let mut chunks: Vec<Chunk> = pieces.par_iter().map(chunk).collect();
+        progress.check()?;
         // Every face has three corners.
         let double_area = chunks.iter().map(|c| c.double_area).sum::<f64>() / 3.0;
         let metric = metric.scaled_to_sphere(double_area);
@@ -69,12 +81,12 @@ impl Layout {
                 rest.square *= metric.scale * metric.scale;
             }
         });
-        Self {
+        Ok(Self {
             order,
             colours,
             chunks,
             metric,
-        }
+        })
     }
 }
 

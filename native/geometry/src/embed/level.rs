@@ -65,16 +65,24 @@ impl Sweep {
 
 impl Level {
     /// Lays out the mesh that is on the sphere, with its rest shapes in the given metric.
-    pub fn new(partial: &Partial, positions: &[DVec3], metric: Metric) -> Self {
-        let layout = Layout::new(partial, positions, metric);
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn new(
+        partial: &Partial,
+        positions: &[DVec3],
+        metric: Metric,
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
+        let layout = Layout::new(partial, positions, metric, progress)?;
         let points = layout.order.iter().map(|&v| Point {
             position: partial.sphere[v],
             moved: f64::INFINITY,
         });
-        Self {
+        Ok(Self {
             points: points.collect(),
             layout,
-        }
+        })
     }
 
     /// The metric, scaled to the area of the sphere.
@@ -98,7 +106,6 @@ impl Level {
         let mut sum = Sweep::default();
         let mut chunks = &self.layout.chunks[..];
         for colour in &self.layout.colours {
-            progress.check()?;
             let (before, rest) = self.points.split_at_mut(colour.start);
             let (points, after) = rest.split_at_mut(colour.len());
             let others = Others {
@@ -109,9 +116,13 @@ impl Level {
             let (own, later) = chunks.split_at(points.len().div_ceil(CHUNK));
             chunks = later;
             let pairs = points.par_chunks_mut(CHUNK).zip(own);
-            let sweeps: Vec<Sweep> = pairs
-                .map(|(points, chunk)| others.relax(points, chunk, still))
-                .collect();
+            // After a cancellation nobody asks for the points that are left as they are.
+            let relax = |(points, chunk): (&mut [Point], &Chunk)| match progress.check() {
+                Ok(()) => others.relax(points, chunk, still),
+                Err(Cancelled) => Sweep::default(),
+            };
+            let sweeps: Vec<Sweep> = pairs.map(relax).collect();
+            progress.check()?;
             for sweep in &sweeps {
                 sum.add(sweep);
             }

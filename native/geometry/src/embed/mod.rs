@@ -31,6 +31,7 @@ use crate::progress::{Cancelled, Progress};
 use crate::sphere_map::{NotABijection, SphereMap, folded_faces};
 pub use cover::{CoverError, CoverReport, Covered, cover};
 pub use energy::distortion;
+use energy::try_distortion;
 use finish::finish;
 pub use proposal::ProposalReport;
 use proposal::unit_vectors;
@@ -189,7 +190,7 @@ fn embed_in_pool(
     let mesh = hierarchy.mesh();
     let proposed = predictor.propose(hierarchy, &progress.part("", 0.0, 0.7))?;
     let sphere = unit_vectors(&proposed, mesh.n_vertices());
-    let proposal = ProposalReport::new(mesh, &sphere, proposed.n_relaxations);
+    let proposal = ProposalReport::new(mesh, &sphere, proposed.n_relaxations, progress)?;
     let mut valid = Valid::new(sphere, proposed.n_relaxations);
     if !proposal.is_valid() {
         valid.repair(hierarchy, proposal.n_folds, &progress.part("", 0.7, 0.9))?;
@@ -200,12 +201,14 @@ fn embed_in_pool(
         (settings, Stiffness::Shape),
         &progress.part("", 0.9, 1.0),
     )?;
+    progress.check()?;
     let map = SphereMap::prove(mesh.clone(), finish.sphere)?;
+    progress.check()?;
     let report = Report {
         n_vertices: mesh.n_vertices(),
         n_folds: 0,
         degree: 1,
-        energy: distortion(mesh, map.sphere()),
+        energy: try_distortion(mesh, map.sphere(), progress)?,
         n_relaxations: valid.n_relaxations + finish.n_relaxations,
         n_sweeps: finish.n_sweeps,
         complete: finish.complete,
@@ -232,6 +235,7 @@ pub fn even(hierarchy: &CollapseHierarchy, progress: &Progress) -> Result<Sphere
         let how = (&Settings::default(), Stiffness::Even);
         let mesh = hierarchy.mesh();
         let sphere = finish(mesh, sphere, how, &finishing)?.sphere;
+        progress.check()?;
         Ok(SphereMap::prove(mesh.clone(), sphere)?)
     })
 }

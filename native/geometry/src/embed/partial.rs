@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use crate::hierarchy::{Collapse, CollapseHierarchy};
 use crate::mesh::{Id, TriangleMesh, VertexId, VertexMap};
+use crate::progress::{Cancelled, Progress};
 
 /// How many rings a thread copies at least.
 const LEAST_CHUNK: usize = 512;
@@ -50,9 +51,20 @@ impl Partial {
     }
 
     /// A whole mesh.
-    pub fn whole(mesh: &TriangleMesh, sphere: VertexMap<DVec3>) -> Self {
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn whole(
+        mesh: &TriangleMesh,
+        sphere: VertexMap<DVec3>,
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
         let n = mesh.n_vertices();
-        let ring = |i| mesh.neighbours(VertexId::from_index(i)).collect();
+        // A ring that stays empty after a cancellation is never seen.
+        let ring = |i| match progress.check() {
+            Ok(()) => mesh.neighbours(VertexId::from_index(i)).collect(),
+            Err(Cancelled) => Vec::new(),
+        };
         let rings = (0..n)
             .into_par_iter()
             .with_min_len(LEAST_CHUNK)
@@ -65,9 +77,10 @@ impl Partial {
             n_there: n,
         };
         for v in mesh.vertex_ids() {
+            progress.check()?;
             partial.colours[v] = partial.free_colour(partial.ring(v));
         }
-        partial
+        Ok(partial)
     }
 
     /// How many vertices are there.
@@ -209,7 +222,8 @@ mod tests {
     fn collapses_and_their_undoing_keep_rings_and_colours_right() {
         let mesh = shapes::blob(1, 5);
         let n = mesh.n_vertices();
-        let whole = Partial::whole(&mesh, VertexMap::filled(n, DVec3::Z));
+        let whole =
+            Partial::whole(&mesh, VertexMap::filled(n, DVec3::Z), &Progress::none()).unwrap();
         check(&whole);
         let mut partial = whole.clone();
         let mut removed = Vec::new();

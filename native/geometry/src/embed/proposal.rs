@@ -4,14 +4,15 @@ use glam::DVec3;
 use serde::Serialize;
 
 use super::Proposal;
-use super::energy::distortion;
+use super::energy::try_distortion;
 use crate::mesh::{TriangleMesh, VertexMap};
+use crate::progress::{Cancelled, Progress};
 use crate::sphere_map::{degree, folded_faces};
 
 /// What was proposed, before any repair.
 #[derive(Clone, Copy, PartialEq, Debug, Default, Serialize)]
 pub struct ProposalReport {
-    /// Its [`distortion`]; what is not usable counts as the centre of the sphere.
+    /// Its [`distortion`](super::distortion); what is not usable counts as the centre of the sphere.
     pub energy: f64,
     /// How many triangles were folded.
     pub n_folds: usize,
@@ -27,16 +28,28 @@ pub struct ProposalReport {
 
 impl ProposalReport {
     /// Assesses what was proposed, as it is after `unit_vectors`.
-    pub fn new(mesh: &TriangleMesh, sphere: &VertexMap<DVec3>, n_relaxations: u64) -> Self {
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn new(
+        mesh: &TriangleMesh,
+        sphere: &VertexMap<DVec3>,
+        n_relaxations: u64,
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
         let n_folds = folded_faces(mesh.faces(), sphere).len();
-        Self {
-            energy: distortion(mesh, sphere),
+        progress.check()?;
+        let energy = try_distortion(mesh, sphere, progress)?;
+        let degree = degree(mesh.faces(), sphere);
+        progress.check()?;
+        Ok(Self {
+            energy,
             n_folds,
             folds_pct: 100.0 * n_folds as f64 / mesh.n_faces() as f64,
-            degree: degree(mesh.faces(), sphere),
+            degree,
             n_unusable: sphere.iter().filter(|&&p| p == DVec3::ZERO).count(),
             n_relaxations,
-        }
+        })
     }
 
     /// Whether the proposal is a bijection as it stands.

@@ -48,14 +48,14 @@ pub fn repair(
     progress: &Progress,
 ) -> Result<Option<Repaired>, Cancelled> {
     let mut clearing = Clearing {
-        partial: Partial::whole(mesh, sphere),
+        partial: Partial::whole(mesh, sphere, progress)?,
         removed: Vec::new(),
     };
     if !clearing.clear(&progress.part("", 0.0, 0.5))? {
         return Ok(None);
     }
     let Clearing { partial, removed } = clearing;
-    let mut growth = Growth::new(partial, mesh, Stiffness::Shape);
+    let mut growth = Growth::new(partial, mesh, Stiffness::Shape, progress)?;
     match put_back(
         &mut growth,
         &removed,

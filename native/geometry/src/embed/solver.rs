@@ -50,13 +50,13 @@ impl Solver {
         hierarchy: &CollapseHierarchy,
         progress: &Progress,
     ) -> Result<Proposal, PredictError> {
-        let mut growth = Growth::tetrahedron(hierarchy, wanted);
+        let mut growth = Growth::tetrahedron(hierarchy, wanted, progress)?;
         let mut n_relaxations = 0;
         let mut grown = self.grow(hierarchy, &mut growth, progress);
         if let Err(GrowError::NoRoom { .. }) = grown {
             n_relaxations += growth.n_relaxations;
             // Triangles of equal size have the most room; relaxation brings the shape back later.
-            growth = Growth::tetrahedron(hierarchy, Stiffness::Equal);
+            growth = Growth::tetrahedron(hierarchy, Stiffness::Equal, progress)?;
             grown = self.grow(hierarchy, &mut growth, progress);
         }
         match grown {

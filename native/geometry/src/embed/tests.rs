@@ -6,7 +6,12 @@ use crate::shapes;
 
 /// A hierarchy made without regard to shape: short edges first, in rounds.
 pub fn hierarchy(mesh: TriangleMesh) -> CollapseHierarchy {
-    let mut partial = Partial::whole(&mesh, VertexMap::filled(mesh.n_vertices(), DVec3::Z));
+    let mut partial = Partial::whole(
+        &mesh,
+        VertexMap::filled(mesh.n_vertices(), DVec3::Z),
+        &Progress::none(),
+    )
+    .unwrap();
     let mut builder = HierarchyBuilder::new();
     while partial.n_there() > 4 {
         let mut blocked = VertexMap::filled(mesh.n_vertices(), false);

@@ -1,6 +1,7 @@
 //! The edges of a polygon mesh, whatever its faces are.
 
 use crate::mesh::{Id, PolygonMesh, VertexId};
+use crate::progress::{Cancelled, Progress};
 
 const NONE: u32 = u32::MAX;
 
@@ -23,18 +24,14 @@ pub struct PolygonEdges {
 }
 
 impl PolygonEdges {
-    /// Finds the edges, sorted by their ends. O(n log n).
-    pub fn new(mesh: &PolygonMesh) -> Self {
+    /// Finds the edges, sorted by their ends. Linear but for the sorting around each vertex.
+    ///
+    /// # Errors
+    /// When cancelled.
+    pub fn new(mesh: &PolygonMesh, progress: &Progress) -> Result<Self, Cancelled> {
         let (next, face_of) = next_corners(mesh);
-        let corners = mesh.corners();
-        let mut keyed: Vec<(u64, u32)> = (0..)
-            .zip(&next)
-            .map(|(c, &n)| {
-                let [a, b] = [corners[c as usize], corners[n as usize]];
-                (u64::from(a.min(b).0) << 32 | u64::from(a.max(b).0), c)
-            })
-            .collect();
-        keyed.sort_unstable();
+        progress.check()?;
+        let (bucket_ends, mut entries) = by_smaller_end(mesh, &next, progress)?;
         let mut edges = Self {
             ends: Vec::new(),
             n_sides: Vec::new(),
@@ -43,14 +40,20 @@ impl PolygonEdges {
             twins: vec![NONE; next.len()],
             next,
         };
-        for run in keyed.chunk_by(|a, b| a.0 == b.0) {
-            edges.add(run, corners);
+        let mut start = 0;
+        for (vertex, &end) in (0..).map(VertexId).zip(&bucket_ends) {
+            progress.check()?;
+            let bucket = &mut entries[start..end as usize];
+            start = end as usize;
+            bucket.sort_unstable();
+            for run in bucket.chunk_by(|a, b| a.0 == b.0) {
+                edges.add([vertex, run[0].0], run, mesh.corners());
+            }
         }
-        edges
+        Ok(edges)
     }
 
-    fn add(&mut self, run: &[(u64, u32)], corners: &[VertexId]) {
-        let key = run[0].0;
+    fn add(&mut self, ends: [VertexId; 2], run: &[Side], corners: &[VertexId]) {
         for &(_, corner) in run {
             self.of_corner[corner as usize] = self.ends.len() as u32;
         }
@@ -60,8 +63,7 @@ impl PolygonEdges {
             self.twins[a as usize] = b;
             self.twins[b as usize] = a;
         }
-        self.ends
-            .push([VertexId((key >> 32) as u32), VertexId(key as u32)]);
+        self.ends.push(ends);
         self.n_sides.push(run.len() as u32);
     }
 
@@ -113,6 +115,41 @@ impl PolygonEdges {
         }
         valences
     }
+}
+
+/// A halfedge as the smaller end of its edge sees it: the larger end, and the corner.
+type Side = (VertexId, u32);
+
+/// The halfedges by the smaller end of their edge, each with the larger end, and where those of
+/// each vertex end.
+fn by_smaller_end(
+    mesh: &PolygonMesh,
+    next: &[u32],
+    progress: &Progress,
+) -> Result<(Vec<u32>, Vec<Side>), Cancelled> {
+    let corners = mesh.corners();
+    let ends = |(corner, &next): (&VertexId, &u32)| {
+        let other = corners[next as usize];
+        [*corner.min(&other), *corner.max(&other)]
+    };
+    let mut places = vec![0_u32; mesh.n_vertices() + 1];
+    for [smaller, _] in corners.iter().zip(next).map(ends) {
+        places[smaller.index() + 1] += 1;
+    }
+    progress.check()?;
+    for v in 1..places.len() {
+        places[v] += places[v - 1];
+    }
+    // Each start moves on as its vertex's halfedges come and becomes their end.
+    let mut entries = vec![(VertexId(0), 0); corners.len()];
+    for (c, [smaller, larger]) in (0..).zip(corners.iter().zip(next).map(ends)) {
+        progress.check()?;
+        let place = &mut places[smaller.index()];
+        entries[*place as usize] = (larger, c);
+        *place += 1;
+    }
+    places.pop();
+    Ok((places, entries))
 }
 
 fn next_corners(mesh: &PolygonMesh) -> (Vec<u32>, Vec<u32>) {

@@ -2,6 +2,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::*;
 use crate::mesh::{PolygonMesh, VertexId};
+use crate::progress::Progress;
 use crate::shapes;
 
 #[test]
@@ -61,7 +62,7 @@ fn a_face_without_area_has_no_normal_and_poisons_nothing() {
 #[test]
 fn closed_shapes_have_genus_zero_in_one_piece() {
     for (name, mesh) in shapes::closed(4) {
-        let found = topology(&shapes::polygons(&mesh));
+        let found = topology(&shapes::polygons(&mesh), &Progress::none()).unwrap();
         assert!(found.closed && found.manifold, "{name}");
         let counts = (
             found.n_components,
@@ -75,7 +76,11 @@ fn closed_shapes_have_genus_zero_in_one_piece() {
 
 fn flat(faces: &[Vec<u32>]) -> Topology {
     let positions = (0..12).map(|i| DVec3::splat(f64::from(i))).collect();
-    topology(&PolygonMesh::from_faces(positions, faces).unwrap())
+    topology(
+        &PolygonMesh::from_faces(positions, faces).unwrap(),
+        &Progress::none(),
+    )
+    .unwrap()
 }
 
 #[test]

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::{Groups, PolygonEdges};
 use crate::mesh::{Id, PolygonMesh};
+use crate::progress::{Cancelled, Progress};
 
 /// Counts that do not depend on positions.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize)]
@@ -28,28 +29,38 @@ pub struct Topology {
 }
 
 /// Counts vertices, faces, pieces, handles and borders.
-pub fn topology(mesh: &PolygonMesh) -> Topology {
-    topology_of(mesh, &PolygonEdges::new(mesh))
+///
+/// # Errors
+/// When cancelled.
+pub fn topology(mesh: &PolygonMesh, progress: &Progress) -> Result<Topology, Cancelled> {
+    topology_of(mesh, &PolygonEdges::new(mesh, progress)?, progress)
 }
 
 /// The same for a mesh whose edges are at hand.
-pub fn topology_of(mesh: &PolygonMesh, edges: &PolygonEdges) -> Topology {
+///
+/// # Errors
+/// When cancelled.
+pub fn topology_of(
+    mesh: &PolygonMesh,
+    edges: &PolygonEdges,
+    progress: &Progress,
+) -> Result<Topology, Cancelled> {
     let mut is_used = vec![false; mesh.n_vertices()];
     mesh.corners()
         .iter()
         .for_each(|v| is_used[v.index()] = true);
     let n_vertices = is_used.iter().filter(|&&used| used).count();
     let n_unused = mesh.n_vertices() - n_vertices;
-    let n_components = n_groups(mesh, edges, |_| true) - n_unused;
+    let n_components = n_groups(mesh, edges, |_| true, progress)? - n_unused;
     let n_border_vertices = border_ends(mesh, edges);
-    let n_borders =
-        n_groups(mesh, edges, |n_sides| n_sides == 1) - (mesh.n_vertices() - n_border_vertices);
+    let n_borders = n_groups(mesh, edges, |n_sides| n_sides == 1, progress)?
+        - (mesh.n_vertices() - n_border_vertices);
     let is_paired =
         |c: usize| edges.n_sides[edges.of_corner[c] as usize] == 1 || edges.twin(c).is_some();
-    let manifold = (0..edges.n_corners()).all(is_paired) && n_fans(edges) == n_vertices;
+    let manifold = (0..edges.n_corners()).all(is_paired) && n_fans(edges, progress)? == n_vertices;
     let euler = n_vertices as i64 - edges.len() as i64 + mesh.n_faces() as i64;
     let genus = (2 * n_components as i64 - n_borders as i64 - euler).div_euclid(2);
-    Topology {
+    Ok(Topology {
         n_vertices,
         n_faces: mesh.n_faces(),
         n_quads: mesh.n_quads(),
@@ -58,18 +69,24 @@ pub fn topology_of(mesh: &PolygonMesh, edges: &PolygonEdges) -> Topology {
         closed: !edges.n_sides.contains(&1),
         manifold,
         n_borders,
-    }
+    })
 }
 
 /// How many groups of vertices the edges with a wanted number of sides make.
-fn n_groups(mesh: &PolygonMesh, edges: &PolygonEdges, is_wanted: impl Fn(u32) -> bool) -> usize {
+fn n_groups(
+    mesh: &PolygonMesh,
+    edges: &PolygonEdges,
+    is_wanted: impl Fn(u32) -> bool,
+    progress: &Progress,
+) -> Result<usize, Cancelled> {
     let mut groups = Groups::new(mesh.n_vertices());
     for (&[a, b], &n_sides) in edges.ends.iter().zip(&edges.n_sides) {
+        progress.check()?;
         if is_wanted(n_sides) {
             groups.link(a.index(), b.index());
         }
     }
-    groups.numbered().1
+    Ok(groups.numbered().1)
 }
 
 /// How many vertices lie on an edge with one side.
@@ -89,12 +106,13 @@ fn border_ends(mesh: &PolygonMesh, edges: &PolygonEdges) -> usize {
 }
 
 /// How many fans of faces there are around all vertices: one each in a manifold mesh.
-fn n_fans(edges: &PolygonEdges) -> usize {
+fn n_fans(edges: &PolygonEdges, progress: &Progress) -> Result<usize, Cancelled> {
     let mut groups = Groups::new(edges.n_corners());
     for corner in 0..edges.n_corners() {
+        progress.check()?;
         if let Some(twin) = edges.twin(corner) {
             groups.link(corner, edges.next(twin));
         }
     }
-    groups.numbered().1
+    Ok(groups.numbered().1)
 }

@@ -95,7 +95,9 @@ impl Bvh {
         for (slot, &face) in order.iter().enumerate() {
             slots[face as usize] = slot as u32;
         }
+        progress.check()?;
         let sorted = order.iter().map(|&face| triangles[face as usize]).collect();
+        progress.check()?;
         let faces = order.into_iter().map(FaceId).collect();
         Ok(Self {
             nodes,
@@ -117,13 +119,22 @@ impl Bvh {
     /// When cancelled.
     pub fn build_of_mesh(mesh: &TriangleMesh, progress: &Progress) -> Result<Self, Cancelled> {
         let triangles: Vec<_> = mesh.face_ids().map(|face| mesh.triangle(face)).collect();
+        progress.check()?;
         Self::build(&triangles, progress)
     }
 
     /// Builds the tree over points, as triangles without size: face i is the i-th point.
     pub fn of_points(points: &[DVec3]) -> Self {
+        Self::build_of_points(points, &Progress::none()).expect("nobody cancels")
+    }
+
+    /// The same for many points: it can be cancelled.
+    ///
+    /// # Errors
+    /// When cancelled.
+    pub fn build_of_points(points: &[DVec3], progress: &Progress) -> Result<Self, Cancelled> {
         let triangles: Vec<_> = points.iter().map(|&p| [p; 3]).collect();
-        Self::new(&triangles)
+        Self::build(&triangles, progress)
     }
 
     /// How many triangles there are.

@@ -24,6 +24,7 @@ impl Prepared {
             source,
             report,
         } = clean::clean(input, progress)?;
+        progress.check()?;
         let frame = Frame::new(bounds(mesh.positions()));
         let mesh = mesh.with_positions(frame.enter(mesh.positions()));
         Ok(Self {

@@ -132,9 +132,9 @@ fn run(
     let report = Report {
         version: VERSION,
         settings: settings.clone(),
-        input: measure::topology(input.mesh),
+        input: measure::topology(input.mesh, progress)?,
         clean: prepared.report,
-        output: measure::topology(&mesh),
+        output: measure::topology(&mesh, progress)?,
         embedding: joined.embedding,
         parts: joined.parts,
         score,
@@ -160,6 +160,7 @@ fn run_parts(
     clock: &mut Clock,
 ) -> Result<Joined, Error> {
     let parts = clock.step("split", || split::split(&prepared.mesh, progress))?;
+    progress.check()?;
     let shares = split::share(&parts, settings.faces, settings.kind.fewest_faces());
     let reduced = reduced.filter(|_| parts.len() == 1);
     let reduced = reduced.map(|r| r.with_positions(prepared.frame.enter(r.positions())));

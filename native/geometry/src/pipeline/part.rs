@@ -50,6 +50,7 @@ struct Reduction {
 impl PartJob<'_> {
     pub fn run(self, clock: &mut Clock, progress: &Progress<'_>) -> Result<PartResult, Error> {
         let (n_input_faces, area) = (self.part.n_faces(), measure::total_area(&self.part));
+        progress.check()?;
         let stage = progress.part("decimate", 0.0, 0.2);
         let reduction = clock.step("decimate", || self.reduce(&stage))?;
         let stage = progress.part("embed", 0.2, 0.6);

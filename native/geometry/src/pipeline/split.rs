@@ -14,6 +14,7 @@ pub fn split(whole: &TriangleMesh, progress: &Progress<'_>) -> Result<Vec<Triang
     refuse_borders(whole)?;
     progress.check()?;
     let (component, n) = whole.face_components();
+    progress.check()?;
     if n == 1 {
         return Ok(vec![checked(whole.clone(), [1, 1])?]);
     }

@@ -81,6 +81,7 @@ fn embed_parts(
         .iter()
         .map(|m| measure::total_area(m.map.mesh()))
         .collect();
+    progress.check()?;
     let (mut positions, mut sphere, mut faces) = (Vec::new(), Vec::new(), Vec::new());
     for embedded in &maps {
         let first = positions.len() as u32;
@@ -95,14 +96,16 @@ fn embed_parts(
                 .map(|f| f.map(|v| v.0 + first)),
         );
     }
+    progress.check()?;
     let reports: Vec<_> = maps.into_iter().map(|embedded| embedded.report).collect();
+    let topology = measure::topology(mesh, progress)?;
     progress.at(1.0)?;
     Ok(EmbeddedParts {
         mesh: polygons(prepared.frame.leave(&positions), &faces),
         sphere,
         report: EmbedReport {
             version: VERSION,
-            input: measure::topology(mesh),
+            input: topology,
             clean: prepared.report,
             embedding: join_embeddings(&reports, &areas),
             parts: reports,

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::statistics::{harmonic, share};
+use super::statistics::harmonic;
 use super::surface::Surface;
 use crate::measure::{Groups, angle_between};
 use crate::mesh::{FaceId, Id};
@@ -31,33 +31,38 @@ pub fn f1_pct(
     progress: &Progress,
 ) -> Result<Option<f64>, Cancelled> {
     let diagonal = input.diagonal();
-    let wanted = SharpLines::find(input, SHARP_INPUT, SHORTEST_LINE * diagonal);
+    let wanted = SharpLines::find(input, SHARP_INPUT, SHORTEST_LINE * diagonal, progress)?;
     let is_clear = wanted.length >= LEAST_TOTAL * diagonal
         && wanted.length >= LEAST_SHARE * wanted.length_of_all.max(1e-300);
     if !is_clear {
         return Ok(None);
     }
-    progress.check()?;
-    let found = SharpLines::find(output, SHARP_OUTPUT, 0.0);
+    let found = SharpLines::find(output, SHARP_OUTPUT, 0.0, progress)?;
     let [wanted, found] = [&wanted, &found].map(|lines| lines.samples(SPACING * diagonal));
     if found.is_empty() {
         return Ok(Some(0.0));
     }
     let tolerance = TOLERANCE * diagonal;
-    progress.check()?;
-    let precision = share_near(&found, &wanted, tolerance);
-    progress.check()?;
-    let recall = share_near(&wanted, &found, tolerance);
+    let precision = share_near(&found, &wanted, tolerance, progress)?;
+    let recall = share_near(&wanted, &found, tolerance, progress)?;
     Ok(Some(100.0 * harmonic(precision, recall)))
 }
 
 /// The share of points that have another point within the tolerance.
-fn share_near(points: &[DVec3], others: &[DVec3], tolerance: f64) -> f64 {
-    let tree = Bvh::of_points(others);
-    let limit = tolerance * tolerance;
-    share(points, |&p| {
-        tree.closest_where(p, limit, |_| true).is_some()
-    })
+fn share_near(
+    points: &[DVec3],
+    others: &[DVec3],
+    tolerance: f64,
+    progress: &Progress,
+) -> Result<f64, Cancelled> {
+    let tree = Bvh::build_of_points(others, progress)?;
+    let mut n_near = 0;
+    for &p in points {
+        progress.check()?;
+        let near = tree.closest_where(p, tolerance * tolerance, |_| true);
+        n_near += usize::from(near.is_some());
+    }
+    Ok(n_near as f64 / points.len() as f64)
 }
 
 struct SharpLines {
@@ -69,8 +74,13 @@ struct SharpLines {
 
 impl SharpLines {
     /// Edges with a larger angle between their faces, in connected lines no shorter than asked.
-    fn find(surface: &Surface, degrees: f64, shortest: f64) -> Self {
-        let edges = sharp_edges(surface, degrees);
+    fn find(
+        surface: &Surface,
+        degrees: f64,
+        shortest: f64,
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
+        let edges = sharp_edges(surface, degrees, progress)?;
         let mut groups = Groups::new(surface.mesh.n_vertices());
         for &edge in &edges {
             let [a, b] = surface.edges.ends[edge];
@@ -90,11 +100,11 @@ impl SharpLines {
             .collect();
         let segment = |&e: &usize| surface.edges.ends[e].map(|v| surface.mesh.position(v));
         let segments = kept.iter().map(segment).collect();
-        Self {
+        Ok(Self {
             segments,
             length: length_of(&kept),
             length_of_all,
-        }
+        })
     }
 
     fn samples(&self, spacing: f64) -> Vec<DVec3> {
@@ -107,17 +117,22 @@ impl SharpLines {
 }
 
 /// Edges of two faces whose normals differ by more, in order.
-fn sharp_edges(surface: &Surface, degrees: f64) -> Vec<usize> {
+fn sharp_edges(
+    surface: &Surface,
+    degrees: f64,
+    progress: &Progress,
+) -> Result<Vec<usize>, Cancelled> {
     let edges = &surface.edges;
     let mut is_sharp = vec![false; edges.len()];
     for corner in 0..edges.n_corners() {
+        progress.check()?;
         if let Some(twin) = edges.twin(corner).filter(|&twin| twin > corner) {
             let [a, b] = [corner, twin].map(|c| newell_normal(surface, FaceId(edges.face_of[c])));
             let angle = angle_between(a, b).to_degrees();
             is_sharp[edges.of_corner[corner] as usize] = angle > degrees;
         }
     }
-    (0..edges.len()).filter(|&edge| is_sharp[edge]).collect()
+    Ok((0..edges.len()).filter(|&edge| is_sharp[edge]).collect())
 }
 
 /// The unit normal of a polygon that need not be flat.

@@ -6,6 +6,7 @@ use super::statistics::{median, share};
 use super::surface::Surface;
 use crate::measure::Groups;
 use crate::mesh::Id;
+use crate::progress::{Cancelled, Progress};
 
 /// Chains of edges that go straight through inner vertices of four quads.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize)]
@@ -31,12 +32,14 @@ pub struct Strips {
     pub spiral_pct: Option<f64>,
 }
 
-pub fn chains(surface: &Surface) -> Chains {
+pub fn chains(surface: &Surface, progress: &Progress) -> Result<Chains, Cancelled> {
     let edges = &surface.edges;
     let onward = straight_on(surface);
+    progress.check()?;
     let mut groups = Groups::new(edges.len());
     let mut is_end = vec![false; edges.len()];
     for (corner, onward) in onward.into_iter().enumerate() {
+        progress.check()?;
         let edge = edges.of_corner[corner] as usize;
         match onward {
             Some(next) => groups.link(edge, edges.of_corner[next] as usize),
@@ -45,17 +48,20 @@ pub fn chains(surface: &Surface) -> Chains {
     }
     let (chain, n) = groups.numbered();
     let lengths = counts(&chain, n);
-    let mut is_loop = has_each_vertex_once(surface, &chain, &lengths);
+    let mut is_loop = vec![true; n];
     for (&chain, _) in chain.iter().zip(is_end).filter(|(_, end)| *end) {
         is_loop[chain as usize] = false;
     }
+    progress.check()?;
+    drop_crossed(surface, &chain, &lengths, &mut is_loop);
+    progress.check()?;
     let of_edges: Vec<u32> = chain.iter().map(|&c| lengths[c as usize]).collect();
-    Chains {
+    Ok(Chains {
         chain_mean: edges.len() as f64 / n as f64,
         chain_median: median(&lengths),
         chain_edge_median: median(&of_edges),
         loop_edges_pct: 100.0 * share(&chain, |&c| is_loop[c as usize]),
-    }
+    })
 }
 
 /// For each corner's halfedge the one that continues it straight through its end.
@@ -82,24 +88,22 @@ fn straight_on(surface: &Surface) -> Vec<Option<usize>> {
     (0..edges.n_corners()).map(onward).collect()
 }
 
-/// Whether each chain has as many vertices as edges: one that closes crosses itself otherwise.
-fn has_each_vertex_once(surface: &Surface, chain: &[u32], lengths: &[u32]) -> Vec<bool> {
-    let touches = chain
-        .iter()
-        .zip(&surface.edges.ends)
-        .flat_map(|(&c, ends)| ends.map(|v| (c, v)));
-    let mut touches: Vec<_> = touches.collect();
+/// Leaves out loops that have fewer vertices than edges: they cross themselves.
+fn drop_crossed(surface: &Surface, chain: &[u32], lengths: &[u32], is_loop: &mut [bool]) {
+    let of_loops = chain.iter().zip(&surface.edges.ends);
+    let of_loops = of_loops.filter(|&(&c, _)| is_loop[c as usize]);
+    let mut touches: Vec<_> = of_loops
+        .flat_map(|(&c, ends)| ends.map(|v| (c, v)))
+        .collect();
     touches.sort_unstable();
     touches.dedup();
     let n_vertices = counts(
         &touches.into_iter().map(|(c, _)| c).collect::<Vec<_>>(),
         lengths.len(),
     );
-    n_vertices
-        .iter()
-        .zip(lengths)
-        .map(|(vertices, edges)| vertices == edges)
-        .collect()
+    for (is_loop, (vertices, edges)) in is_loop.iter_mut().zip(n_vertices.iter().zip(lengths)) {
+        *is_loop &= vertices == edges;
+    }
 }
 
 fn counts(group: &[u32], n: usize) -> Vec<u32> {

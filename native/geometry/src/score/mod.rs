@@ -172,11 +172,16 @@ fn measure(
     progress.at(0.9)?;
     let feature_f1_pct = features::f1_pct(input, output, progress)?;
     progress.at(0.93)?;
-    let own = topology_of(output.mesh, &output.edges);
+    let own = topology_of(output.mesh, &output.edges, progress)?;
     progress.at(0.95)?;
-    let other = topology_of(input.mesh, &input.edges);
+    let other = topology_of(input.mesh, &input.edges, progress)?;
     progress.at(0.97)?;
-    let asymmetry = symmetry::asymmetry(input, output, settings.seed);
+    let asymmetry = symmetry::asymmetry(input, output, settings.seed, progress)?;
+    progress.at(0.98)?;
+    let shape = shape::shape(output, progress)?;
+    progress.check()?;
+    let chains = lines::chains(output, progress)?;
+    let strips = lines::strips(output);
     progress.at(0.99)?;
     let triangles = output.triangles.len();
     let of_target = |target: usize| triangles as f64 / 2.0 / target as f64;
@@ -198,10 +203,10 @@ fn measure(
         self_intersecting_pct: crossing::involved_pct(&crossing, triangles),
         chamfer_at_target_pct: settings.target.map(|t| distance.chamfer_pct * of_target(t)),
         distance,
-        shape: shape::shape(output),
+        shape,
         flow,
-        chains: lines::chains(output),
-        strips: lines::strips(output),
+        chains,
+        strips,
         feature_f1_pct,
         asymmetry,
     })

@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::statistics::{mean, quantile};
 use super::surface::Surface;
 use crate::measure::{angle_between, corner_angle};
+use crate::progress::{Cancelled, Progress};
 
 /// How even the edges and how square the faces are; angles are in degrees.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize)]
@@ -34,7 +35,7 @@ pub struct Shape {
     pub triangle_angle_p01: Option<f64>,
 }
 
-pub fn shape(surface: &Surface) -> Shape {
+pub fn shape(surface: &Surface, progress: &Progress) -> Result<Shape, Cancelled> {
     let mean_length = mean(&surface.edge_lengths);
     let squares: Vec<f64> = surface
         .edge_lengths
@@ -42,12 +43,21 @@ pub fn shape(surface: &Surface) -> Shape {
         .map(|length| (length - mean_length).powi(2))
         .collect();
     let quads = polygons::<4>(surface);
+    progress.check()?;
     let triangles = polygons::<3>(surface);
+    progress.check()?;
     let jacobians: Vec<f64> = quads.iter().map(jacobian).collect();
+    progress.check()?;
     let warps: Vec<f64> = quads.iter().map(warp).collect();
+    progress.check()?;
     let deviations: Vec<f64> = quads.iter().flat_map(corner_deviations).collect();
-    let smallest: Vec<f64> = triangles.iter().map(smallest_angle).collect();
-    Shape {
+    progress.check()?;
+    let mut smallest = Vec::with_capacity(triangles.len());
+    for triangle in &triangles {
+        progress.check()?;
+        smallest.push(smallest_angle(triangle));
+    }
+    Ok(Shape {
         edge_mean: mean_length,
         edge_cv: mean(&squares).sqrt() / mean_length.max(1e-300),
         jacobian_min: jacobians.iter().copied().min_by(f64::total_cmp),
@@ -58,7 +68,7 @@ pub fn shape(surface: &Surface) -> Shape {
         warp_p99: any(&warps).map(|all| quantile(all.to_vec(), 0.99)),
         triangle_angle_mean_min: any(&smallest).map(mean),
         triangle_angle_p01: any(&smallest).map(|all| quantile(all.to_vec(), 0.01)),
-    }
+    })
 }
 
 fn any(values: &[f64]) -> Option<&[f64]> {
@@ -121,12 +131,13 @@ fn smallest_angle(p: &[DVec3; 3]) -> f64 {
 mod tests {
     use super::*;
     use crate::mesh::PolygonMesh;
-    use crate::progress::Progress;
 
     fn of_quad(corners: [[f64; 3]; 4]) -> Shape {
         let mesh =
             PolygonMesh::from_faces(corners.map(DVec3::from).to_vec(), &[[0, 1, 2, 3]]).unwrap();
-        shape(&Surface::new(&mesh, &Progress::none()).unwrap().unwrap())
+        let progress = Progress::none();
+        let surface = Surface::new(&mesh, &progress).unwrap().unwrap();
+        shape(&surface, &progress).unwrap()
     }
 
     fn is_near(value: Option<f64>, wanted: f64) -> bool {

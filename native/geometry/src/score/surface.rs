@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 
-use super::watched::watched;
 use crate::measure::{PolygonEdges, area_vector};
 use crate::mesh::{Id, PolygonMesh, VertexId, bounds};
 use crate::nearest::Bvh;
@@ -37,22 +36,26 @@ impl<'a> Surface<'a> {
     pub fn new(mesh: &'a PolygonMesh, progress: &Progress) -> Result<Option<Self>, Cancelled> {
         progress.at(0.0)?;
         let triangles: Vec<[VertexId; 3]> = mesh.faces().flat_map(|face| cut(mesh, face)).collect();
+        progress.check()?;
         let corners: Vec<[DVec3; 3]> = triangles
             .iter()
             .map(|t| t.map(|v| mesh.position(v)))
             .collect();
+        progress.check()?;
         let area_vectors: Vec<DVec3> = corners.iter().map(|&t| area_vector(t)).collect();
+        progress.check()?;
         let area: f64 = area_vectors.iter().map(|a| a.length()).sum();
         if area <= 0.0 || !area.is_finite() {
             return Ok(None);
         }
         progress.at(0.3)?;
-        let copy = mesh.clone();
-        let edges = watched(move || PolygonEdges::new(&copy), progress)?;
+        let edges = PolygonEdges::new(mesh, progress)?;
         progress.at(0.6)?;
         let length = |[a, b]: &[VertexId; 2]| mesh.position(*a).distance(mesh.position(*b));
         let edge_lengths = edges.ends.iter().map(length).collect();
+        progress.check()?;
         let used = used_positions(mesh);
+        progress.check()?;
         Ok(Some(Self {
             mesh,
             edge_lengths,

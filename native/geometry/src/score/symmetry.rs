@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::statistics::{mean, quantile};
 use super::surface::Surface;
 use crate::nearest::Bvh;
+use crate::progress::{Cancelled, Progress};
 
 const N_SAMPLES: usize = 5000;
 /// The input is symmetric if this share of samples, mirrored, lies no farther than the deviation.
@@ -14,35 +15,49 @@ const DEVIATION: f64 = 0.005;
 
 /// The mean distance of mirrored vertices to the nearest vertex / mean edge length, over the axes
 /// in which the input is symmetric; none if there is none.
-pub fn asymmetry(input: &Surface, output: &Surface, seed: u64) -> Option<f64> {
-    let axes = mirror_axes(input, seed);
+pub fn asymmetry(
+    input: &Surface,
+    output: &Surface,
+    seed: u64,
+    progress: &Progress,
+) -> Result<Option<f64>, Cancelled> {
+    let axes = mirror_axes(input, seed, progress)?;
     if axes.is_empty() {
-        return None;
+        return Ok(None);
     }
-    let tree = Bvh::of_points(&output.used);
-    let far = |&axis: &usize| {
-        let far = |&p: &DVec3| {
-            tree.closest(mirrored(input, p, axis))
-                .distance_squared
-                .sqrt()
-        };
-        mean(&output.used.iter().map(far).collect::<Vec<_>>())
+    let tree = Bvh::build_of_points(&output.used, progress)?;
+    let mut far = Vec::new();
+    for axis in axes {
+        let mirrored = output.used.iter().map(|&p| mirrored(input, p, axis));
+        far.push(mean(&distances(&tree, mirrored, progress)?));
+    }
+    Ok(Some(mean(&far) / mean(&output.edge_lengths).max(1e-300)))
+}
+
+fn distances(
+    tree: &Bvh,
+    points: impl Iterator<Item = DVec3>,
+    progress: &Progress,
+) -> Result<Vec<f64>, Cancelled> {
+    let far = |p| {
+        progress.check()?;
+        Ok(tree.closest(p).distance_squared.sqrt())
     };
-    let far: Vec<f64> = axes.iter().map(far).collect();
-    Some(mean(&far) / mean(&output.edge_lengths).max(1e-300))
+    points.map(far).collect()
 }
 
 /// The axes along which the surface, mirrored at the middle of its box, comes to lie on itself.
-fn mirror_axes(surface: &Surface, seed: u64) -> Vec<usize> {
+fn mirror_axes(surface: &Surface, seed: u64, progress: &Progress) -> Result<Vec<usize>, Cancelled> {
     let samples = surface.sample(N_SAMPLES, seed.wrapping_add(2));
-    let is_mirror = |&axis: &usize| {
-        let far = samples.iter().map(|sample| {
-            let p = mirrored(surface, sample.position, axis);
-            surface.tree.closest(p).distance_squared.sqrt()
-        });
-        quantile(far.collect(), SHARE) < DEVIATION * surface.diagonal()
-    };
-    (0..3).filter(is_mirror).collect()
+    let mut axes = Vec::new();
+    for axis in 0..3 {
+        let points = samples.iter().map(|s| mirrored(surface, s.position, axis));
+        let far = distances(&surface.tree, points, progress)?;
+        if quantile(far, SHARE) < DEVIATION * surface.diagonal() {
+            axes.push(axis);
+        }
+    }
+    Ok(axes)
 }
 
 fn mirrored(surface: &Surface, mut p: DVec3, axis: usize) -> DVec3 {

@@ -1,10 +1,12 @@
 //! The checks at the door of a triangle mesh.
 
+use glam::DVec3;
 use thiserror::Error;
 
 use super::super::polygon_mesh::MAX_ELEMENTS;
 use super::super::{FaceId, Id, VertexId};
 use super::BORDER;
+use crate::progress::{Cancelled, Progress};
 
 /// Why arrays do not make a [`TriangleMesh`](super::TriangleMesh).
 #[derive(Clone, PartialEq, Debug, Error)]
@@ -71,11 +73,25 @@ pub enum TriangleMeshError {
     },
 }
 
-/// Checks that corners exist and differ within their face.
-pub(super) fn check_corners(
+/// Checks all that can be seen without the edges.
+pub(super) fn check_arrays(
+    positions: &[DVec3],
     faces: &[[VertexId; 3]],
-    n_vertices: usize,
 ) -> Result<(), TriangleMeshError> {
+    let n = positions.len().max(3 * faces.len());
+    if n > MAX_ELEMENTS {
+        return Err(TriangleMeshError::TooLarge { n });
+    }
+    if let Some(i) = positions.iter().position(|p| !p.is_finite()) {
+        return Err(TriangleMeshError::NotFinite {
+            vertex: VertexId::from_index(i),
+        });
+    }
+    check_corners(faces, positions.len())
+}
+
+/// Checks that corners exist and differ within their face.
+fn check_corners(faces: &[[VertexId; 3]], n_vertices: usize) -> Result<(), TriangleMeshError> {
     for (i, corners) in faces.iter().enumerate() {
         let face = FaceId::from_index(i);
         if let Some(&vertex) = corners.iter().find(|v| v.index() >= n_vertices) {
@@ -99,7 +115,8 @@ pub(super) fn check_corners(
 pub(super) fn match_twins(
     faces: &[[VertexId; 3]],
     n_vertices: usize,
-) -> Result<Vec<u32>, TriangleMeshError> {
+    progress: &Progress,
+) -> Result<Result<Vec<u32>, TriangleMeshError>, Cancelled> {
     let ends = |h: u32| {
         let [f, i] = [(h / 3) as usize, (h % 3) as usize];
         (faces[f][i], faces[f][(i + 1) % 3])
@@ -110,12 +127,14 @@ pub(super) fn match_twins(
         let (a, b) = ends(h);
         bucket_ends[a.min(b).index() + 1] += 1;
     }
+    progress.check()?;
     for v in 0..n_vertices {
         bucket_ends[v + 1] += bucket_ends[v];
     }
     // Each start moves on as its bucket fills and becomes its end.
     let mut entries = vec![(VertexId(0), 0u32); n_halfedges as usize];
     for h in 0..n_halfedges {
+        progress.check()?;
         let (a, b) = ends(h);
         let end = &mut bucket_ends[a.min(b).index()];
         entries[*end as usize] = (a.max(b), h);
@@ -124,14 +143,17 @@ pub(super) fn match_twins(
     let mut twins = vec![BORDER; entries.len()];
     let mut start = 0;
     for &end in &bucket_ends[..n_vertices] {
+        progress.check()?;
         let bucket = &mut entries[start..end as usize];
         start = end as usize;
         bucket.sort_unstable();
         for run in bucket.chunk_by(|x, y| x.0 == y.0) {
-            pair(run, ends, &mut twins)?;
+            if let Err(error) = pair(run, ends, &mut twins) {
+                return Ok(Err(error));
+            }
         }
     }
-    Ok(twins)
+    Ok(Ok(twins))
 }
 
 /// Pairs the halfedges of one edge.

@@ -4,11 +4,11 @@ mod build;
 
 use glam::DVec3;
 
-use super::polygon_mesh::MAX_ELEMENTS;
 use super::{FaceId, HalfedgeId, Id, VertexId};
+use crate::progress::{Cancelled, Progress};
 
 pub use build::TriangleMeshError;
-use build::{check_corners, match_twins};
+use build::{check_arrays, match_twins};
 
 const BORDER: u32 = u32::MAX;
 
@@ -36,25 +36,38 @@ impl TriangleMesh {
         positions: Vec<DVec3>,
         faces: Vec<[VertexId; 3]>,
     ) -> Result<Self, TriangleMeshError> {
-        let n = positions.len().max(3 * faces.len());
-        if n > MAX_ELEMENTS {
-            return Err(TriangleMeshError::TooLarge { n });
+        let built = Self::build(positions, faces, &Progress::none());
+        built.expect("nobody cancels")
+    }
+
+    /// The same for large meshes: it can be cancelled.
+    ///
+    /// # Errors
+    /// When cancelled; inside, the promises of the type, the first one broken.
+    pub fn build(
+        positions: Vec<DVec3>,
+        faces: Vec<[VertexId; 3]>,
+        progress: &Progress,
+    ) -> Result<Result<Self, TriangleMeshError>, Cancelled> {
+        if let Err(error) = check_arrays(&positions, &faces) {
+            return Ok(Err(error));
         }
-        if let Some(i) = positions.iter().position(|p| !p.is_finite()) {
-            return Err(TriangleMeshError::NotFinite {
-                vertex: VertexId::from_index(i),
-            });
-        }
-        check_corners(&faces, positions.len())?;
-        let twins = match_twins(&faces, positions.len())?;
+        progress.check()?;
+        let twins = match match_twins(&faces, positions.len(), progress)? {
+            Ok(twins) => twins,
+            Err(error) => return Ok(Err(error)),
+        };
         let mut mesh = Self {
             positions,
             faces,
             twins,
             outgoing: Vec::new(),
         };
-        mesh.outgoing = mesh.find_fans()?;
-        Ok(mesh)
+        let outgoing = mesh.find_fans(progress)?;
+        Ok(outgoing.map(|outgoing| {
+            mesh.outgoing = outgoing;
+            mesh
+        }))
     }
 
     /// Checks every promise of the type again; for tests and debug assertions after edits.
@@ -264,7 +277,10 @@ impl TriangleMesh {
         self.n_vertices() as i64 - self.n_edges() as i64 + self.n_faces() as i64
     }
 
-    fn find_fans(&self) -> Result<Vec<HalfedgeId>, TriangleMeshError> {
+    fn find_fans(
+        &self,
+        progress: &Progress,
+    ) -> Result<Result<Vec<HalfedgeId>, TriangleMeshError>, Cancelled> {
         let n_vertices = self.n_vertices();
         let mut outgoing = vec![HalfedgeId(BORDER); n_vertices];
         let mut n_corners = vec![0u32; n_vertices];
@@ -277,9 +293,10 @@ impl TriangleMesh {
             }
         }
         for (i, &start) in outgoing.iter().enumerate() {
+            progress.check()?;
             let vertex = VertexId::from_index(i);
             if start.0 == BORDER {
-                return Err(TriangleMeshError::IsolatedVertex { vertex });
+                return Ok(Err(TriangleMeshError::IsolatedVertex { vertex }));
             }
             let fan = Outgoing {
                 mesh: self,
@@ -288,10 +305,10 @@ impl TriangleMesh {
             }
             .count();
             if fan != n_corners[i] as usize {
-                return Err(TriangleMeshError::NonManifoldVertex { vertex });
+                return Ok(Err(TriangleMeshError::NonManifoldVertex { vertex }));
             }
         }
-        Ok(outgoing)
+        Ok(Ok(outgoing))
     }
 }
 
