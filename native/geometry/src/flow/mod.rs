@@ -7,6 +7,7 @@
 pub mod complex;
 pub mod cones;
 pub mod conformal;
+pub mod creases;
 pub mod field;
 pub mod place;
 pub mod singularities;

@@ -21,6 +21,7 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 use thiserror::Error;
 
+use crate::measure::total_area;
 use crate::mesh::{FaceMap, HalfedgeId, HalfedgeMap, TriangleMesh, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
 use crate::sparse::NotPositiveDefinite;
@@ -66,14 +67,20 @@ pub struct OrientationField {
 }
 
 /// Why there is no field.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Error)]
+#[derive(Clone, Copy, PartialEq, Debug, Error)]
 pub enum FieldError {
     /// The user asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// The sizes of the mesh overflow.
+    /// The linear system has no factor: numbers overflow.
     #[error(transparent)]
     Unsolvable(#[from] NotPositiveDefinite),
+    /// Squares of lengths overflow or vanish.
+    #[error("an area of {area:e} is too large or too small to compute with")]
+    Size {
+        /// The area of the mesh.
+        area: f64,
+    },
     /// Only closed meshes of genus 0 have the singularities that the next steps count on.
     #[error("the mesh has {n_borders} borders and the Euler number {euler}, not 2")]
     NotASphere {
@@ -103,6 +110,10 @@ pub fn orient(
             n_borders: mesh.border_loops().len(),
             euler: mesh.euler_number(),
         });
+    }
+    let area = total_area(mesh);
+    if !(1e-200..1e200).contains(&area) {
+        return Err(FieldError::Size { area });
     }
     let charts = Charts::new(mesh);
     let axes = shape::axes(mesh);

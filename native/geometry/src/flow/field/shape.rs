@@ -151,11 +151,13 @@ fn shape(mesh: &TriangleMesh, face: FaceId, axes: Axes, normals: &VertexMap<DVec
     let Axes { u, v, .. } = axes;
     let corners = mesh.triangle(face);
     let normals = mesh.face(face).map(|vertex| normals[vertex]);
+    let size = (corners[1] - corners[0]).length() + (corners[2] - corners[0]).length() + 1e-300;
     let mut system = DMat3::ZERO;
     let mut right = DVec3::ZERO;
     for i in 0..3 {
         let j = (i + 1) % 3;
-        let [edge, turn] = [corners[j] - corners[i], normals[j] - normals[i]];
+        let edge = (corners[j] - corners[i]) / size;
+        let turn = normals[j] - normals[i];
         let [x, y] = [edge.dot(u), edge.dot(v)];
         for (row, value) in [
             (DVec3::new(x, y, 0.0), turn.dot(u)),
@@ -168,7 +170,7 @@ fn shape(mesh: &TriangleMesh, face: FaceId, axes: Axes, normals: &VertexMap<DVec
     // Triangles without a height have no curvature across: a little of the trace decides.
     let trace = system.x_axis.x + system.y_axis.y + system.z_axis.z;
     let ridge = DMat3::from_diagonal(DVec3::splat(1e-9 * trace + 1e-300));
-    let form = (system + ridge).inverse() * right;
+    let form = (system + ridge).inverse() * right / size;
     if !form.is_finite() {
         return DMat3::ZERO;
     }

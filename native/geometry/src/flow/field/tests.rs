@@ -1,4 +1,5 @@
 use super::*;
+use crate::mesh::FaceId;
 use crate::shapes;
 
 fn field_of(mesh: &TriangleMesh) -> OrientationField {
@@ -131,5 +132,78 @@ fn crosses_follow_a_singularity_that_was_moved() {
     for (a, b) in field.residuals.iter().zip(&nearest) {
         let off = (a - b).rem_euclid(1.0);
         assert!(off.min(1.0 - off) < 1e-9, "{a} {b}");
+    }
+}
+
+/// The mesh turned, scaled and with vertices, faces and corners numbered anew, and where the
+/// vertices went.
+fn renumbered(mesh: &TriangleMesh) -> (TriangleMesh, Vec<VertexId>) {
+    let mut random = crate::random::Random::new(5);
+    let mut order: Vec<usize> = (0..mesh.n_vertices()).collect();
+    for i in (1..order.len()).rev() {
+        order.swap(i, random.below(i + 1));
+    }
+    let new: Vec<VertexId> = order.iter().map(|&i| VertexId(i as u32)).collect();
+    let turn = glam::DMat3::from_rotation_x(0.7) * glam::DMat3::from_rotation_z(2.1) * 30.0;
+    let mut positions = vec![DVec3::ZERO; order.len()];
+    for (&at, &p) in order.iter().zip(mesh.positions()) {
+        positions[at] = turn * p;
+    }
+    let mut faces: Vec<[VertexId; 3]> = mesh
+        .faces()
+        .iter()
+        .map(|&[a, b, c]| {
+            let [a, b, c] = [a, b, c].map(|v| new[v.0 as usize]);
+            [[a, b, c], [b, c, a], [c, a, b]][random.below(3)]
+        })
+        .collect();
+    let third = faces.len() / 3;
+    faces.rotate_left(third);
+    (TriangleMesh::new(positions, faces).unwrap(), new)
+}
+
+#[test]
+fn singularities_do_not_depend_on_numbers_pose_or_size() {
+    for mesh in [shapes::blob(6, 12), shapes::limbs(3, 12), shapes::cuboid(9)] {
+        let (other, new) = renumbered(&mesh);
+        let [one, two] = [field_of(&mesh), field_of(&other)];
+        for v in mesh.vertex_ids() {
+            assert_eq!(one.indices[v], two.indices[new[v.0 as usize]]);
+        }
+    }
+}
+
+#[test]
+fn degenerate_faces_have_a_direction_too() {
+    let mesh = shapes::sphere(8);
+    let mut positions = mesh.positions().to_vec();
+    let [a, b, c] = mesh.face(FaceId(40));
+    positions[a.0 as usize] = positions[b.0 as usize];
+    positions[c.0 as usize] = positions[b.0 as usize];
+    let mesh = mesh.with_positions(positions);
+    let field = field_of(&mesh);
+    assert_eq!(field.check(&mesh), Ok(()));
+    assert!(
+        field
+            .directions
+            .iter()
+            .all(|d| (d.length() - 1.0).abs() < 1e-9)
+    );
+}
+
+#[test]
+fn sizes_that_overflow_are_refused_and_others_make_no_difference() {
+    let mesh = shapes::sphere(4);
+    let scaled =
+        |size: f64| mesh.with_positions(mesh.positions().iter().map(|p| *p * size).collect());
+    let settings = Settings::default();
+    for size in [1e300, 1e-200] {
+        let refused = orient(&scaled(size), &settings, &Progress::none());
+        assert!(matches!(refused, Err(FieldError::Size { .. })), "{size}");
+    }
+    let one = orient(&mesh, &settings, &Progress::none()).unwrap();
+    for size in [1e-90, 1e90] {
+        let other = orient(&scaled(size), &settings, &Progress::none()).unwrap();
+        assert_eq!(one.indices, other.indices, "{size}");
     }
 }
