@@ -75,7 +75,7 @@ pub enum FieldError {
     /// The linear system has no factor: numbers overflow.
     #[error(transparent)]
     Unsolvable(#[from] NotPositiveDefinite),
-    /// Squares of lengths overflow or vanish.
+    /// Squares of areas overflow or vanish.
     #[error("an area of {area:e} is too large or too small to compute with")]
     Size {
         /// The area of the mesh.
@@ -112,7 +112,7 @@ pub fn orient(
         });
     }
     let area = total_area(mesh);
-    if !(1e-200..1e200).contains(&area) {
+    if !(1e-120..1e120).contains(&area) {
         return Err(FieldError::Size { area });
     }
     let charts = Charts::new(mesh);

@@ -202,7 +202,7 @@ fn sizes_that_overflow_are_refused_and_others_make_no_difference() {
         assert!(matches!(refused, Err(FieldError::Size { .. })), "{size}");
     }
     let one = orient(&mesh, &settings, &Progress::none()).unwrap();
-    for size in [1e-90, 1e90] {
+    for size in [1e-50, 1e50] {
         let other = orient(&scaled(size), &settings, &Progress::none()).unwrap();
         assert_eq!(one.indices, other.indices, "{size}");
     }
