@@ -3,12 +3,25 @@
 //! A smooth [`field`] of crosses says how the quads should lie; where it turns by a quarter too
 //! much or too little around a vertex, the result has an irregular vertex ([`singularities`]). The
 //! [`wish`] is the flat map that follows the field best, in units of a quad's edge.
+//!
+//! That metric is decided by free Gaussian integers, its [`periods`]. [`drag`] moves it through
+//! valid metrics only, [`rounding`] to whole periods, with [`rings`] round the limbs imposed
+//! first; a [`search`] of counted trials picks and improves. Its unit [`grid`] is the quads.
 
 pub mod complex;
 pub mod cones;
 pub mod conformal;
+pub mod covariance;
 pub mod creases;
+pub mod drag;
 pub mod field;
+pub mod grid;
+pub mod lines;
+pub mod periods;
 pub mod place;
+pub mod rings;
+pub mod rounding;
+pub mod search;
 pub mod singularities;
+pub mod strips;
 pub mod wish;

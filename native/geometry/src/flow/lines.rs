@@ -1,0 +1,259 @@
+//! The lines of the grid of a whole metric, traced without reading the grid.
+//!
+//! In doubled coordinates a cone lies at even numbers. A line at an odd level is the middle of a
+//! strip of quads and never meets a vertex; one at an even level runs along edges and ends where
+//! it meets a cone. In a triangle the lines of one axis join its side of the widest span to the
+//! other two, so that following them is counting. Agrees with [`super::strips::strips`] on the
+//! grid when every vertex is a cone: a line through a flat vertex is not seen as a loop.
+
+use glam::{DVec2, I64Vec2};
+
+use super::complex::Complex;
+use super::strips::Strips;
+use crate::mesh::{FaceId, HalfedgeId, Id};
+
+const NONE: u32 = u32::MAX;
+
+/// Where a line crosses a side of a triangle.
+#[derive(Clone, Copy, PartialEq)]
+struct Crossing {
+    side: HalfedgeId,
+    /// 0: the line has one x; 1: one y, in the frame of the side's face.
+    axis: usize,
+    /// How many doubled levels from the side's origin: 1 to twice the span, excluded.
+    step: usize,
+}
+
+struct Tracer<'a> {
+    complex: &'a Complex,
+    /// The absolute difference of x and y along each halfedge.
+    spans: Vec<[usize; 2]>,
+    /// Where the crossings of each halfedge and axis begin.
+    firsts: Vec<[usize; 2]>,
+    /// The line of each crossing.
+    lines: Vec<u32>,
+}
+
+/// One line.
+struct Line {
+    is_middle: bool,
+    is_loop: bool,
+    length: f64,
+}
+
+/// Follows every strip and every edge line of a metric whose vectors are whole.
+pub fn trace(complex: &Complex) -> Strips {
+    let mut tracer = Tracer::new(complex);
+    let mut lines = Vec::new();
+    for side in complex.halfedge_ids() {
+        for axis in [0, 1] {
+            for step in 1..(2 * tracer.spans[side.index()][axis]).max(1) {
+                let start = Crossing { side, axis, step };
+                if tracer.lines[tracer.place(start)] == NONE {
+                    lines.push(tracer.follow(start, lines.len() as u32));
+                }
+            }
+        }
+    }
+    let n_spiral = complex
+        .face_ids()
+        .map(|f| tracer.meetings(f, &mut lines))
+        .sum::<usize>();
+    let looped = lines.iter().filter(|line| line.is_loop && !line.is_middle);
+    let area = complex.area();
+    Strips {
+        spiral: n_spiral as f64 / area,
+        loops: looped.map(|line| line.length).sum::<f64>() / (2.0 * area),
+        n_strips: lines.iter().filter(|line| line.is_middle).count(),
+    }
+}
+
+impl<'a> Tracer<'a> {
+    fn new(complex: &'a Complex) -> Self {
+        let span = |v: &DVec2| [v.x, v.y].map(|x| x.abs().round() as usize);
+        let spans: Vec<[usize; 2]> = complex.start.iter().map(span).collect();
+        let mut n = 0;
+        let mut first = |span: usize| {
+            n += 2 * span;
+            n - 2 * span
+        };
+        let firsts = spans.iter().map(|s| [first(s[0]), first(s[1])]).collect();
+        Self {
+            complex,
+            spans,
+            firsts,
+            lines: vec![NONE; n],
+        }
+    }
+
+    fn place(&self, crossing: Crossing) -> usize {
+        self.firsts[crossing.side.index()][crossing.axis] + crossing.step
+    }
+
+    fn span(&self, side: HalfedgeId, axis: usize) -> usize {
+        self.spans[side.index()][axis]
+    }
+
+    /// The side of a face that all lines of an axis cross.
+    fn widest(&self, face: FaceId, axis: usize) -> HalfedgeId {
+        let h = self.complex.halfedge(face);
+        let wider = |a, b| {
+            if self.span(b, axis) > self.span(a, axis) {
+                b
+            } else {
+                a
+            }
+        };
+        wider(wider(h, h.next()), h.prev())
+    }
+
+    /// Where the line through a crossing leaves the face; none at a vertex.
+    fn through(&self, from: Crossing) -> Option<Crossing> {
+        let Crossing { side, axis, step } = from;
+        let widest = self.widest(side.face(), axis);
+        let [whole, before] = [widest, widest.prev()].map(|h| 2 * self.span(h, axis));
+        let (side, step) = if side == widest.next() {
+            (widest, whole - step)
+        } else if side == widest.prev() {
+            (widest, before - step)
+        } else if step < before {
+            (widest.prev(), before - step)
+        } else if step > before {
+            (widest.next(), whole - step)
+        } else {
+            return None;
+        };
+        Some(Crossing { side, axis, step })
+    }
+
+    /// The same crossing seen from the other face.
+    fn across(&self, from: Crossing) -> Crossing {
+        Crossing {
+            side: self.complex.twins[from.side],
+            axis: from.axis ^ usize::from(self.complex.turns[from.side] % 2),
+            step: 2 * self.span(from.side, from.axis) - from.step,
+        }
+    }
+
+    /// How long the line through a crossing is inside its face.
+    fn chord(&self, at: Crossing) -> f64 {
+        let widest = self.widest(at.side.face(), at.axis);
+        let [whole, after, before] =
+            [widest, widest.next(), widest.prev()].map(|h| 2.0 * self.span(h, at.axis) as f64);
+        let step = at.step as f64;
+        let from_origin = if at.side == widest.next() {
+            whole - step
+        } else if at.side == widest.prev() {
+            before - step
+        } else {
+            step
+        };
+        let longest = 2.0 * self.complex.double_area(at.side.face()) / whole;
+        if from_origin <= before {
+            longest * from_origin / before
+        } else {
+            longest * (whole - from_origin) / after
+        }
+    }
+
+    fn follow(&mut self, start: Crossing, name: u32) -> Line {
+        let mut line = Line {
+            is_middle: start.step % 2 == 1,
+            is_loop: false,
+            length: 0.0,
+        };
+        let mut at = start;
+        loop {
+            let place = self.place(at);
+            self.lines[place] = name;
+            let Some(out) = self.through(at) else {
+                return line;
+            };
+            line.length += self.chord(at);
+            let place = self.place(out);
+            self.lines[place] = name;
+            at = self.across(out);
+            if self.lines[self.place(at)] != NONE {
+                line.is_loop = at == start;
+                return line;
+            }
+        }
+    }
+
+    /// Where the lines of a face cross themselves: counts middles, and loops are none any more.
+    fn meetings(&self, face: FaceId, lines: &mut [Line]) -> usize {
+        let h = self.complex.halfedge(face);
+        let sides = [h, h.next(), h.prev()].map(|e| (2.0 * self.complex.start[e]).as_i64vec2());
+        let corners = [I64Vec2::ZERO, sides[0], sides[0] + sides[1]];
+        let [low, high] = [
+            corners[0].min(corners[1]).min(corners[2]),
+            corners[0].max(corners[1]).max(corners[2]),
+        ];
+        let widest = [0, 1].map(|axis| self.widest(face, axis));
+        let name = |level: i64, axis: usize| {
+            let origin = corners[widest[axis].corner()][axis];
+            let first = self.firsts[widest[axis].index()][axis];
+            self.lines[first + (level - origin).unsigned_abs() as usize]
+        };
+        let mut n_middles = 0;
+        for y in low.y + 1..high.y {
+            for x in (low.x + 1..high.x).filter(|x| (x - y) % 2 == 0) {
+                let [one, other] = [name(x, 0), name(y, 1)];
+                if one != other || !self.owns(h, [corners, sides], I64Vec2::new(x, y)) {
+                    continue;
+                }
+                if y % 2 == 0 {
+                    lines[one as usize].is_loop = false;
+                } else {
+                    n_middles += 1;
+                }
+            }
+        }
+        n_middles
+    }
+
+    /// Whether a point lies in a face; on an edge it belongs to the smaller halfedge's.
+    fn owns(&self, h: HalfedgeId, [corners, sides]: [[I64Vec2; 3]; 2], point: I64Vec2) -> bool {
+        let side_of = |i: usize| sides[i].perp_dot(point - corners[i]);
+        let names = [h, h.next(), h.prev()];
+        (0..3).all(|i| match side_of(i) {
+            0 => names[i] < self.complex.twins[names[i]],
+            side => side > 0,
+        })
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::float_cmp)] // No spiral is exactly none.
+mod tests {
+    use super::*;
+    use crate::flow::complex::tests::box_complex;
+
+    #[test]
+    fn the_lines_of_a_box_are_its_sections() {
+        // 10 × 8 × 6: as many strips as units of length; all lines but the box's edges are loops.
+        let strips = trace(&box_complex(1));
+        assert_eq!(strips.n_strips, 24);
+        assert_eq!(strips.spiral, 0.0);
+        let loops = 9.0 * 28.0 + 7.0 * 32.0 + 5.0 * 36.0;
+        assert!((strips.loops - loops / 752.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn flips_and_frames_do_not_change_the_lines() {
+        let mut complex = box_complex(1);
+        let before = trace(&complex);
+        for h in complex.halfedge_ids() {
+            complex.reframe(h.face(), h.0 as u8 % 4);
+            if complex.is_flippable(h, 1e-6) {
+                complex.flip(h);
+                let after = trace(&complex);
+                assert_eq!(
+                    (after.n_strips, after.spiral),
+                    (before.n_strips, before.spiral)
+                );
+                assert!((after.loops - before.loops).abs() < 1e-12);
+            }
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! A tree of short edges, and every other edge as a sum of its vectors.
+
+use glam::IVec2;
+
+use super::NotASphere;
+use crate::flow::complex::{Complex, Rows, Turn};
+use crate::mesh::{FaceId, HalfedgeId, Id, VertexId};
+
+/// The halfedges of a spanning tree of least length, shortest first.
+pub(super) fn shortest_tree(complex: &Complex) -> Vec<HalfedgeId> {
+    let mut edges: Vec<HalfedgeId> = complex
+        .halfedge_ids()
+        .filter(|&h| h < complex.twins[h])
+        .collect();
+    let length = |h: HalfedgeId| complex.start[h].length_squared();
+    edges.sort_by(|&a, &b| length(a).total_cmp(&length(b)).then(a.cmp(&b)));
+    let mut groups = Groups((0..complex.n_vertices()).collect());
+    edges.retain(|&h| groups.join(complex.origins[h], complex.target(h)));
+    edges
+}
+
+/// Disjoint sets of vertices.
+struct Groups(Vec<usize>);
+
+impl Groups {
+    fn root(&mut self, mut i: usize) -> usize {
+        while self.0[i] != i {
+            self.0[i] = self.0[self.0[i]];
+            i = self.0[i];
+        }
+        i
+    }
+
+    /// Whether the two were apart; they no longer are.
+    fn join(&mut self, a: VertexId, b: VertexId) -> bool {
+        let [a, b] = [a, b].map(|v| self.root(v.index()));
+        self.0[a] = b;
+        a != b
+    }
+}
+
+/// Gives each halfedge its row over the vectors of the tree; returns the face whose sum stays open.
+///
+/// The edges off the tree are a tree of the dual graph. A leaf of it is a face with one unknown
+/// edge, which the other two decide. One face is never used: its sum is the closing equation.
+pub(super) fn peel(complex: &mut Complex, tree: &[HalfedgeId]) -> Result<FaceId, NotASphere> {
+    let mut rows = Rows::new(complex.twins.len(), tree.len());
+    let mut is_known = vec![false; complex.twins.len()];
+    for (column, &h) in tree.iter().enumerate() {
+        rows.row_mut(h)[column] = IVec2::X;
+        know(complex, &mut rows, &mut is_known, h);
+    }
+    let mut is_used = vec![false; complex.n_faces()];
+    let mut waiting: Vec<FaceId> = complex.face_ids().collect();
+    while let Some(face) = waiting.pop() {
+        let Some(h) = only_unknown(complex, face, &is_known) else {
+            continue;
+        };
+        let sum: Vec<IVec2> = (rows.row(h.next()).iter().zip(rows.row(h.prev())))
+            .map(|(&a, &b)| -a - b)
+            .collect();
+        rows.row_mut(h).copy_from_slice(&sum);
+        know(complex, &mut rows, &mut is_known, h);
+        is_used[face.index()] = true;
+        waiting.push(complex.twins[h].face());
+    }
+    complex.coefficients = rows;
+    let mut unused = complex.face_ids().filter(|f| !is_used[f.index()]);
+    match (unused.next(), unused.next()) {
+        (Some(face), None) => Ok(face),
+        _ => Err(NotASphere),
+    }
+}
+
+fn only_unknown(complex: &Complex, face: FaceId, is_known: &[bool]) -> Option<HalfedgeId> {
+    let h = complex.halfedge(face);
+    let mut unknown = [h, h.next(), h.prev()]
+        .into_iter()
+        .filter(|e| !is_known[e.index()]);
+    unknown.next().filter(|_| unknown.next().is_none())
+}
+
+/// Carries the row of a halfedge to its twin.
+fn know(complex: &Complex, rows: &mut Rows, is_known: &mut [bool], h: HalfedgeId) {
+    let twin = complex.twins[h];
+    let turned: Vec<IVec2> = rows
+        .row(h)
+        .iter()
+        .map(|&c| -c.turned(complex.turns[h]))
+        .collect();
+    rows.row_mut(twin).copy_from_slice(&turned);
+    [is_known[h.index()], is_known[twin.index()]] = [true; 2];
+}

@@ -1,0 +1,178 @@
+//! Chooses whole periods: the count of quads exact, spirals few, loops many, near the wish.
+//!
+//! Low-energy roundings are not the ones with good loops, and a trial is cheap because no
+//! geometry is involved: the area of the metric is the number of quads. So many roundings at
+//! slightly different scales are scored, and the best is improved by small moves. Trials are
+//! counted, never timed: the result is the same on every machine.
+
+mod local;
+mod moves;
+mod score;
+mod starts;
+
+use thiserror::Error;
+
+use super::complex::Complex;
+use super::covariance::Dense;
+use super::drag::{SHORT, State};
+use super::grid::{self, Grid, NotReadable};
+use super::periods::{self, NotASphere, Periods, evaluate};
+use crate::progress::{Cancelled, Progress};
+
+pub use score::{Score, Weights};
+
+/// What the search may do and what it looks for.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Settings {
+    /// How many small moves are tried after the roundings.
+    pub n_trials: usize,
+    /// What makes a grid good.
+    pub weights: Weights,
+    /// Starts the random choice of moves.
+    pub seed: u64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            n_trials: 800,
+            weights: Weights::default(),
+            seed: 1,
+        }
+    }
+}
+
+/// What was reached.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Report {
+    /// How good the grid is.
+    pub score: Score,
+    /// How many roundings and moves were scored.
+    pub n_trials: usize,
+    /// How many roundings got stuck.
+    pub n_stuck: usize,
+}
+
+/// A flat metric with whole periods, and its unit grid.
+#[derive(Clone, Debug)]
+pub struct Quantised {
+    /// The metric: `start` is whole, `wish` in units of one edge of the grid.
+    pub complex: Complex,
+    /// Its grid, all of it quads.
+    pub grid: Grid,
+    /// What was reached.
+    pub report: Report,
+}
+
+/// Why a metric got no whole periods.
+#[derive(Clone, PartialEq, Debug, Error)]
+pub enum QuantiseError {
+    /// The complex is not one sphere.
+    #[error(transparent)]
+    NotASphere(#[from] NotASphere),
+    /// Every rounding met cones that would have to coincide.
+    #[error("none of {n_tried} roundings of {n_periods} periods could be reached")]
+    Stuck {
+        /// How many were tried.
+        n_tried: usize,
+        /// How many Gaussian integers were to be found.
+        n_periods: usize,
+    },
+    /// The grid of whole periods could not be read.
+    #[error(transparent)]
+    Unreadable(#[from] NotReadable),
+    /// The user stopped.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// Gives a flat cone metric whole periods near its wish, so that its grid has `n_quads` quads.
+///
+/// The complex must be compact, as [`super::cones::keep_cones`] leaves it. Keeps its topology
+/// and cone angles; located points follow. Costs a few hundred roundings and drags of the reduced
+/// complex, about a second for a hundred cones.
+///
+/// # Errors
+/// See [`QuantiseError`].
+pub fn quantise(
+    mut complex: Complex,
+    n_quads: usize,
+    settings: &Settings,
+    progress: &Progress,
+) -> Result<Quantised, QuantiseError> {
+    let problem = Problem::new(&mut complex, n_quads, settings)?;
+    let found = starts::round_at_scales(&problem, &progress.part("", 0.0, 0.4))?;
+    let mut n_trials = found.n_tried - found.n_stuck;
+    let best = found.best.ok_or(QuantiseError::Stuck {
+        n_tried: found.n_tried,
+        n_periods: problem.wish.len() / 2,
+    })?;
+    let best = local::improve(&problem, best, &progress.part("", 0.4, 1.0))?;
+    n_trials += settings.n_trials;
+    best.state.replay(&mut complex);
+    for h in complex.halfedge_ids() {
+        complex.wish[h] = evaluate(complex.coefficients.row(h), &problem.wish);
+    }
+    Ok(Quantised {
+        grid: grid::read(&complex)?,
+        complex,
+        report: Report {
+            score: best.score,
+            n_trials,
+            n_stuck: found.n_stuck,
+        },
+    })
+}
+
+/// What all trials share.
+struct Problem<'a> {
+    /// The metric at its start.
+    start: State,
+    /// The wanted periods, scaled so that the wish has the wanted area.
+    wish: Periods,
+    /// The energy as a square form of periods.
+    energy: Dense,
+    /// Its inverse.
+    covariance: Dense,
+    n_quads: f64,
+    settings: &'a Settings,
+}
+
+/// A metric with whole periods and how good it is.
+#[derive(Clone)]
+struct Candidate {
+    state: State,
+    score: Score,
+}
+
+impl<'a> Problem<'a> {
+    fn new(
+        complex: &mut Complex,
+        n_quads: usize,
+        settings: &'a Settings,
+    ) -> Result<Self, NotASphere> {
+        let basis = periods::choose(complex)?;
+        let start = State::new(complex, basis.start);
+        let mut dragged = start.clone();
+        dragged.drag(&basis.wish, SHORT);
+        let n_quads = n_quads as f64;
+        let scale = (n_quads / dragged.complex.area()).sqrt();
+        let energy = Dense::energy(&dragged.complex);
+        Ok(Self {
+            start,
+            wish: basis.wish.iter().map(|x| x * scale).collect(),
+            covariance: energy.inverse(),
+            energy,
+            n_quads,
+            settings,
+        })
+    }
+
+    fn score(&self, state: &State) -> Score {
+        Score::of_lines(&state.complex, &self.wish, self.n_quads)
+    }
+
+    fn cost(&self, score: &Score) -> f64 {
+        score.cost(&self.settings.weights)
+    }
+}

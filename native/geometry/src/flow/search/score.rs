@@ -1,0 +1,91 @@
+//! How good the grid of a metric with whole periods is.
+
+use serde::{Deserialize, Serialize};
+
+use crate::flow::complex::Complex;
+use crate::flow::covariance::energy;
+use crate::flow::grid;
+use crate::flow::lines::trace;
+use crate::flow::strips::doubled_edges;
+
+/// A count of quads this near to the wanted one is as good as exact.
+const EXACT: f64 = 0.005;
+/// What a grid with doubled edges costs more than one without, and each of them.
+const NOT_SIMPLE: f64 = 5.0;
+const DOUBLED: f64 = 0.2;
+
+/// How much each fault counts against a whole grid in spirals.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Weights {
+    /// Per share of quads in spirals.
+    pub spiral: f64,
+    /// Per share of edges on loops, to its credit.
+    pub loops: f64,
+    /// Per unit of mean squared distance from the wish.
+    pub energy: f64,
+    /// Per relative error of the count beyond half a percent.
+    pub count: f64,
+}
+
+impl Default for Weights {
+    fn default() -> Self {
+        Self {
+            spiral: 0.6,
+            loops: 0.6,
+            energy: 1.0,
+            count: 20.0,
+        }
+    }
+}
+
+/// The figures of one grid.
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
+pub struct Score {
+    /// How many quads there are.
+    pub n_quads: usize,
+    /// The count's relative error.
+    pub count_error: f64,
+    /// The mean squared distance of vectors from the wish, in edges.
+    pub energy: f64,
+    /// The share of quads that one strip crosses twice.
+    pub spiral: f64,
+    /// The share of edges on closed lines.
+    pub loops: f64,
+    /// How many halfedges double another; the mesh is simple without any.
+    pub n_doubled: usize,
+}
+
+impl Score {
+    /// Scores a metric with whole periods, but for doubled edges.
+    pub fn of_lines(complex: &Complex, wish: &[f64], n_wanted: f64) -> Self {
+        let area = complex.area();
+        let strips = trace(complex);
+        Self {
+            n_quads: area.round() as usize,
+            count_error: (area / n_wanted - 1.0).abs(),
+            energy: energy(complex, wish),
+            spiral: strips.spiral,
+            loops: strips.loops,
+            n_doubled: 0,
+        }
+    }
+
+    /// Counts the doubled edges too: what costs most of a trial, and no trial that is worse needs.
+    #[must_use]
+    pub fn with_doubled(mut self, complex: &Complex) -> Self {
+        self.n_doubled = grid::read_quads(complex)
+            .map_or(1, |(quads, n_vertices)| doubled_edges(&quads, n_vertices));
+        self
+    }
+
+    /// What the search makes small.
+    pub fn cost(&self, weights: &Weights) -> f64 {
+        let mut cost = weights.spiral * self.spiral - weights.loops * self.loops
+            + weights.energy * self.energy
+            + weights.count * (self.count_error - EXACT).max(0.0);
+        if self.n_doubled > 0 {
+            cost += NOT_SIMPLE + DOUBLED * self.n_doubled as f64;
+        }
+        cost
+    }
+}
