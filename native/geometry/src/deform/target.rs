@@ -40,6 +40,7 @@ impl Target {
         let normals = face_normals(&mesh);
         progress.check()?;
         let features = feature_lines(&mesh, &normals, crease_angle);
+        progress.check()?;
         let bvh = Bvh::build_of_mesh(&mesh, progress)?;
         Ok(Self {
             mesh,

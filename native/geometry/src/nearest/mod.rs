@@ -96,8 +96,11 @@ impl Bvh {
             slots[face as usize] = slot as u32;
         }
         progress.check()?;
-        let sorted = order.iter().map(|&face| triangles[face as usize]).collect();
-        progress.check()?;
+        let mut sorted = Vec::with_capacity(order.len());
+        for &face in &order {
+            progress.check()?;
+            sorted.push(triangles[face as usize]);
+        }
         let faces = order.into_iter().map(FaceId).collect();
         Ok(Self {
             nodes,
