@@ -7,7 +7,7 @@ nothing itself. `operators/remesh.py` is the button, `job.py` the thread behind 
 
 import bpy
 
-from . import panel, settings
+from . import overlay, panel, settings
 from .operators import remesh
 
 _CLASSES = (
@@ -23,10 +23,12 @@ def register() -> None:
         bpy.utils.register_class(each)
     bpy.types.Scene.orbflow = bpy.props.PointerProperty(type=settings.OrbflowSettings)
     bpy.types.VIEW3D_MT_object.append(panel.draw_menu)
+    overlay.register()
 
 
 def unregister() -> None:
     """Called by Blender when the extension is switched off."""
+    overlay.unregister()
     bpy.types.VIEW3D_MT_object.remove(panel.draw_menu)
     del bpy.types.Scene.orbflow
     for each in reversed(_CLASSES):

@@ -100,8 +100,9 @@ class Job:
         self._thread.start()
 
     def cancel(self) -> None:
-        """Asks the thread to stop."""
+        """Asks the thread to stop; what it still finishes is not wanted any more."""
         self._cancel.cancel()
+        self.is_cancelled = True
 
     def has_ended(self) -> bool:
         """Whether `outcomes` or `is_cancelled` is final."""

@@ -15,9 +15,10 @@ _ROWS = (
     ("Faces", "n_faces", "{:,}"),
     ("Quads", "quads_pct", "{:.0f} %"),
     ("Irregular vertices", "irregular_pct", "{:.1f} %"),
-    ("Off the flow", "alignment_deg", "{:.1f}°"),
-    ("Edges on loops", "loop_edges_pct", "{:.0f} %"),
-    ("Edge length variation", "edge_cv", "{:.2f}"),
+    ("Flow deviation", "alignment_deg", "{:.1f}°"),
+    ("On closed loops", "loop_edges_pct", "{:.0f} %"),
+    ("In spirals", "spiral_pct", "{:.0f} %"),
+    ("Edge variation", "edge_cv", "{:.2f}"),
     ("Mean distance", "chamfer_pct", "{:.3f} %"),
     ("Largest distance", "hausdorff_pct", "{:.2f} %"),
 )
@@ -38,7 +39,8 @@ class VIEW3D_PT_orbflow(bpy.types.Panel):
         for name in settings.NAMES:
             layout.prop(context.scene.orbflow, name)
         _button(layout, context)
-        report = context.object and last_report(context.object.name)
+        layout.prop(context.scene.orbflow, "show_irregular")
+        report = _report_of(context.object)
         if report:
             _draw_score(layout.box().column(align=True), report)
 
@@ -62,6 +64,15 @@ def remember(name: str, report: dict[str, Any]) -> None:
 def last_report(name: str) -> dict[str, Any] | None:
     """The report of an object's last run in this session."""
     return _reports.get(name)
+
+
+def _report_of(thing: bpy.types.Object | None) -> dict[str, Any] | None:
+    """The report of what an object is now: none after undo or an edit of its faces."""
+    if thing is None or thing.type != "MESH":
+        return None
+    report = last_report(thing.name)
+    is_current = report and report["output"]["n_faces"] == len(thing.data.polygons)
+    return report if is_current else None
 
 
 def redraw(context: bpy.types.Context) -> None:

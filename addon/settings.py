@@ -5,7 +5,7 @@
 from typing import Any
 
 import bpy
-from bpy.props import EnumProperty, IntProperty
+from bpy.props import BoolProperty, EnumProperty, IntProperty
 
 MIN_FACES = 4
 MAX_FACES = 4_000_000
@@ -66,6 +66,15 @@ NAMES = tuple(Settings.__annotations__)
 
 class OrbflowSettings(bpy.types.PropertyGroup, Settings):
     """The settings that the panel shows, saved with the scene."""
+
+    show_irregular: BoolProperty(
+        name="Irregular Vertices",
+        description=(
+            "Mark the vertices of the active mesh where the grid breaks: blue where one edge is "
+            "missing, red where there is one too many, black otherwise"
+        ),
+        default=False,
+    )
 
 
 def for_core(source: Settings) -> dict[str, Any]:

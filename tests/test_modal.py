@@ -109,6 +109,19 @@ def test_escape_stops_it_and_changes_nothing(window: Window) -> None:
     assert is_tidy(window)
 
 
+def test_escape_counts_even_when_the_work_is_already_done(window: Window) -> None:
+    spot = bpy.data.objects["Spot"]
+    before = arrays(spot)
+    context = window.context()
+    self = operator(window, faces=500)
+    self.invoke(context, None)
+    addon("operators.remesh")._running[-1].wait()
+    send(self, context, "ESC")
+    assert send(self, context, "TIMER") == {"CANCELLED"}
+    assert arrays(spot) == before
+    assert is_tidy(window)
+
+
 def test_blender_may_take_the_operator_away(window: Window) -> None:
     context = window.context()
     self = operator(window, faces=200_000)
