@@ -83,10 +83,13 @@ def redraw(context: bpy.types.Context) -> None:
                 area.tag_redraw()
 
 
-def sentence(report: dict[str, Any]) -> str:
-    """A run in one line."""
-    before, after = report["input"]["n_faces"], report["output"]["n_faces"]
-    return f"{before:,} faces became {after:,}"
+def sentence(reports: list[dict[str, Any]]) -> str:
+    """A run in one line; Blender joins lines without a space."""
+    before, after = (
+        sum(report[side]["n_faces"] for report in reports) for side in ("input", "output")
+    )
+    objects = f"{len(reports)} objects: " if len(reports) > 1 else ""
+    return f"{objects}{before:,} faces became {after:,}"
 
 
 def rows(report: dict[str, Any]) -> list[tuple[str, str]]:

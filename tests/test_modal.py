@@ -144,8 +144,9 @@ def test_the_status_bar_shows_the_step_and_how_to_stop(window: Window) -> None:
     self = operator(window, faces=500)
     self.invoke(context, None)
     shown: list[str] = []
+    row = SimpleNamespace(progress=lambda factor, text: shown.append(f"{text} {factor:.0f}"))
     layout = SimpleNamespace(
-        progress=lambda factor, text: shown.append(f"{text} {factor:.0f}"),
+        row=lambda: row,
         label=lambda text, icon: shown.append(f"{text} {icon}"),
     )
     window.status(SimpleNamespace(layout=layout), None)

@@ -96,11 +96,11 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
         for each in done:
             _replace(context, each)
         if not done:
-            self.report({"ERROR"}, "\n".join(texts))
+            self.report({"ERROR"}, "; ".join(texts))
             return {"CANCELLED"}
         if texts:
-            self.report({"WARNING"}, "\n".join(texts))
-        self.report({"INFO"}, "\n".join(panel.sentence(each.result.report) for each in done))
+            self.report({"WARNING"}, "; ".join(texts))
+        self.report({"INFO"}, panel.sentence([each.result.report for each in done]))
         return {"FINISHED"}
 
 
@@ -153,5 +153,7 @@ def _draw_status(bar: bpy.types.Header, _context: bpy.types.Context) -> None:
     if not _running:
         return
     job = _running[-1]
-    bar.layout.progress(factor=job.share, text=f"Orbflow: {job.step}")
+    row = bar.layout.row()
+    row.ui_units_x = 12  # Blender cuts the text at the width of a short word otherwise
+    row.progress(factor=job.share, text=f"Orbflow: {job.step}")
     bar.layout.label(text="Stop", icon="EVENT_ESC")
