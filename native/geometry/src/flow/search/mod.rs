@@ -176,3 +176,6 @@ impl<'a> Problem<'a> {
         score.cost(&self.settings.weights)
     }
 }
+
+#[cfg(test)]
+mod tests;
