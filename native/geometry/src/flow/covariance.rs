@@ -51,6 +51,33 @@ impl Dense {
         Self { n, values }
     }
 
+    /// A matrix by its entries.
+    pub fn from_fn(n: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
+        let values = (0..n * n).map(|i| entry(i / n, i % n)).collect();
+        Self { n, values }
+    }
+
+    /// Lets a component follow the others so that `row`, of coefficient ±1 there, keeps the sum
+    /// 0: the square form of the others; what is left of the component is 0.
+    pub fn follow(&mut self, row: &[f64], component: usize) {
+        let own = self.column(component).to_vec();
+        let factors: Vec<f64> = (row.iter().enumerate())
+            .map(|(k, &x)| {
+                if k == component {
+                    -1.0
+                } else {
+                    -row[component] * x
+                }
+            })
+            .collect();
+        for (k, line) in self.values.chunks_exact_mut(self.n).enumerate() {
+            let with_own = own[k] + factors[k] * own[component];
+            for (l, value) in line.iter_mut().enumerate() {
+                *value += factors[k] * own[l] + with_own * factors[l];
+            }
+        }
+    }
+
     /// The inverse of an energy's matrix: what a unit of pull on one component does to all.
     #[must_use]
     pub fn inverse(&self) -> Self {

@@ -53,6 +53,13 @@ impl Equations {
         self.rows.is_empty()
     }
 
+    /// The coefficients of each equation, and the component that it is solved for.
+    pub fn rows(&self) -> impl Iterator<Item = (&[f64], usize)> {
+        self.rows
+            .iter()
+            .map(|(row, pivot)| (row.as_slice(), *pivot))
+    }
+
     /// Whether a component is decided by the others.
     pub fn is_pivot(&self, component: usize) -> bool {
         self.rows.iter().any(|(_, pivot)| *pivot == component)

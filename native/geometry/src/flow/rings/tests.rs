@@ -108,14 +108,14 @@ fn moves_of_the_lattice_keep_its_rings() {
     let state = boxed();
     let bands = cylinders(&state.complex, &REACH);
     let rows: Vec<Vec<f64>> = bands.iter().map(|c| c.row(off_axis(c.period))).collect();
-    let covariance = Dense::energy(&state.complex).inverse();
-    let lattice = Lattice::keeping(&covariance, &rows);
+    let energy = Dense::energy(&state.complex);
+    let lattice = Lattice::keeping(&energy, &energy.inverse(), &rows);
     let n = state.periods.len();
     let mut n_found = 0;
     for k in 0..n {
         let mut row = vec![0.0; n];
         row[k] = 1.0;
-        let Some(step) = lattice.move_by(&row, 1.0, &vec![0.0; n]) else {
+        let Some(step) = lattice.move_by(&row, 1.0) else {
             continue;
         };
         n_found += 1;

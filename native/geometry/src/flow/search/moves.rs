@@ -42,7 +42,7 @@ impl Moves {
         let weight = |c: &Cylinder| c.width * c.period.length();
         kept.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
         let rows: Vec<Vec<f64>> = kept.iter().map(|c| c.row(off_axis(c.period))).collect();
-        let lattice = Lattice::keeping(&problem.covariance, &rows);
+        let lattice = Lattice::keeping(&problem.energy, &problem.covariance, &rows);
         Self {
             rings: ring_moves(problem, state, &lattice, missed),
             lattice,
@@ -59,7 +59,6 @@ impl Moves {
         {
             return Some(step);
         }
-        let rest = vec![0.0; self.n];
         if kind < SHARES[1] && !self.segments.is_empty() {
             let [a, b] = [0; 2].map(|_| &self.segments[random.below(self.segments.len())]);
             let shorter = if b.vector.length() < a.vector.length() {
@@ -69,17 +68,15 @@ impl Moves {
             };
             let part = off_axis(shorter.vector);
             let row = real_row(&shorter.coefficients, part);
-            return self
-                .lattice
-                .move_by(&row, -part.of(shorter.vector).round(), &rest);
+            return self.lattice.move_by(&row, -part.of(shorter.vector).round());
         }
         if self.n == 0 {
             return None;
         }
-        let mut row = rest.clone();
+        let mut row = vec![0.0; self.n];
         row[random.below(self.n)] = 1.0;
         let unit = if random.below(2) == 0 { 1.0 } else { -1.0 };
-        self.lattice.move_by(&row, unit, &rest)
+        self.lattice.move_by(&row, unit)
     }
 }
 
@@ -112,8 +109,7 @@ fn ring_moves(
     for cylinder in &worth {
         let part: Part = off_axis(cylinder.period);
         let value = -part.of(cylinder.period).round();
-        let rest = vec![0.0; from_wish.len()];
-        if let Some(step) = lattice.move_by(&cylinder.row(part), value, &rest) {
+        if let Some(step) = lattice.move_by(&cylinder.row(part), value) {
             let energy = 2.0 * dot(&pull, &step) + problem.energy.between(&step, &step);
             let gain = benefit(cylinder) * problem.settings.weights.loops - energy / area;
             moves.push((gain, step));
