@@ -76,11 +76,8 @@ def _report_of(thing: bpy.types.Object | None) -> dict[str, Any] | None:
 
 
 def redraw(context: bpy.types.Context) -> None:
-    """Redraws the status bar."""
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "STATUSBAR":
-                area.tag_redraw()
+    """Redraws the status bar, which is in no screen's list of areas: setting its text does it."""
+    context.workspace.status_text_set_internal("")
 
 
 def sentence(reports: list[dict[str, Any]]) -> str:

@@ -18,19 +18,20 @@ class Window:
         self.timers: list[object] = []
         self.handlers: list[object] = []
         self.reports: list[str] = []
+        self.redraws: list[str] = []
 
     def context(self) -> SimpleNamespace:
         manager = SimpleNamespace(
             event_timer_add=self._add_timer,
             event_timer_remove=self.timers.remove,
             modal_handler_add=self.handlers.append,
-            windows=[],
         )
         real = bpy.context
         return SimpleNamespace(
             window_manager=manager,
             workspace=SimpleNamespace(
-                status_text_set=lambda status: setattr(self, "status", status)
+                status_text_set=lambda status: setattr(self, "status", status),
+                status_text_set_internal=self.redraws.append,
             ),
             window=None,
             scene=real.scene,
@@ -91,6 +92,7 @@ def test_a_run_ends_with_one_result_and_leaves_nothing_behind(window: Window) ->
     assert send(self, context, "MIDDLEMOUSE") == {"PASS_THROUGH"}
     assert send(self, context, "LEFTMOUSE") == {"RUNNING_MODAL"}
     assert until(lambda: send(self, context, "TIMER")) == {"FINISHED"}
+    assert window.redraws
     assert len(bpy.data.objects["Spot"].data.polygons) < 520
     assert is_tidy(window)
     assert addon("panel").rows(addon("panel").last_report("Spot"))

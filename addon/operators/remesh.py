@@ -84,7 +84,6 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
         _running.clear()
         context.window_manager.event_timer_remove(self._timer)
         context.workspace.status_text_set(None)
-        panel.redraw(context)
 
     def _finish(self, context: bpy.types.Context, outcomes: list[Outcome]) -> set[str]:
         """Writes the results; the one place where errors become reports."""
