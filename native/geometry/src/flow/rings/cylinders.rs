@@ -23,7 +23,7 @@ pub fn cylinders(complex: &Complex, reach: &Reach) -> Vec<Cylinder> {
     let limits = Limits {
         longest: reach.longest,
         n_crossed: reach.n_crossed,
-        angle: reach.angle,
+        cone: DVec2::from_angle(reach.angle),
     };
     let mut found = Vec::new();
     let mut known: BTreeSet<Vec<HalfedgeId>> = BTreeSet::new();
@@ -39,7 +39,7 @@ pub fn cylinders(complex: &Complex, reach: &Reach) -> Vec<Cylinder> {
             if !is_seen_again(complex, &sights, i, apex) || apex.length() > reach.longest {
                 continue;
             }
-            if !nears_axis(apex, apex, reach.angle) {
+            if !nears_axis(apex, apex, limits.cone) {
                 continue;
             }
             let Some(cylinder) = close(complex, &sights, i, reach.narrowest) else {

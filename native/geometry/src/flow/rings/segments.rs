@@ -30,7 +30,7 @@ pub fn segments(complex: &Complex, longest: f64, off: f64) -> Vec<Segment> {
     let limits = Limits {
         longest,
         n_crossed: MOST_CROSSED,
-        angle: ANGLE,
+        cone: DVec2::from_angle(ANGLE),
     };
     let mut found = Vec::new();
     let mut sights = Sights::new(complex, limits);

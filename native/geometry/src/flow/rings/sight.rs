@@ -31,8 +31,8 @@ pub(super) struct Sight {
 pub(super) struct Limits {
     pub longest: f64,
     pub n_crossed: usize,
-    /// Only directions this near to an axis; a right angle for all.
-    pub angle: f64,
+    /// Only directions this near to an axis, as the direction so far from the x axis.
+    pub cone: DVec2,
 }
 
 /// All triangles seen from one corner so far.
@@ -135,7 +135,7 @@ impl<'a> Sights<'a> {
         let is_open = sine > NARROW * low.length() * high.length();
         if !is_open
             || distance_to_segment(seen.left, seen.right) > self.limits.longest
-            || !nears_axis(low, high, self.limits.angle)
+            || !nears_axis(low, high, self.limits.cone)
         {
             return;
         }
@@ -162,12 +162,13 @@ fn distance_to_segment(a: DVec2, b: DVec2) -> f64 {
     (a - side * (a.dot(side) / square).clamp(0.0, 1.0)).length()
 }
 
-/// Whether an interval of directions less than half a turn wide meets the cone of `angle` round
-/// an axis.
-pub(super) fn nears_axis(low: DVec2, high: DVec2, angle: f64) -> bool {
+/// Whether an interval of directions less than half a turn wide meets a cone round
+/// an axis, of which `cone` is the side next to the x axis.
+pub(super) fn nears_axis(low: DVec2, high: DVec2, cone: DVec2) -> bool {
     let is_between = |a: DVec2, x: DVec2, b: DVec2| a.perp_dot(x) >= 0.0 && x.perp_dot(b) >= 0.0;
+    let mirrored = DVec2::new(cone.x, -cone.y);
     (0..4u8).any(|quarter| {
-        let [right, left] = [-angle, angle].map(|t| DVec2::from_angle(t).turned(quarter));
+        let [right, left] = [mirrored, cone].map(|side| side.turned(quarter));
         is_between(low, right, high)
             || is_between(low, left, high)
             || is_between(right, low, left)
