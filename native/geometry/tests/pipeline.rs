@@ -8,7 +8,9 @@ use glam::DVec3;
 use orbflow_geometry::embed::Solver;
 use orbflow_geometry::measure::topology;
 use orbflow_geometry::mesh::PolygonMesh;
-use orbflow_geometry::pipeline::{Error, Input, Kind, Primitive, Remeshed, Settings, remesh};
+use orbflow_geometry::pipeline::{
+    Error, Flowed, Input, Kind, Primitive, Remeshed, Settings, remesh,
+};
 use orbflow_geometry::progress::{CancelToken, Progress};
 use orbflow_geometry::sphere_map::check_cover;
 
@@ -255,5 +257,40 @@ fn meshes_of_any_size_and_place_give_the_same_shape() {
         for (p, q) in result.positions().iter().zip(plain.positions()) {
             assert!((*p / scale).distance(*q) < 1e-9, "{p} {q}");
         }
+    }
+}
+
+#[test]
+fn flowing_quads_cover_the_sphere_once_and_are_as_many_as_asked_for() {
+    for (name, mesh) in common::closed(16) {
+        let wanted = Settings {
+            primitive: Some(Primitive::Flow),
+            ..settings(500, Kind::Quads)
+        };
+        let result = run(&common::polygons(&mesh), &wanted).unwrap();
+        let flow = result.report.parts[0].flow.clone();
+        assert!(
+            matches!(flow, Some(Flowed::Used { .. })),
+            "{name}: {flow:?}"
+        );
+        let [n_faces, n_vertices] = [result.mesh.n_faces(), result.mesh.n_vertices()];
+        assert_eq!((result.mesh.n_quads(), n_vertices), (n_faces, n_faces + 2));
+        assert!(n_faces.abs_diff(500) <= 10, "{name}: {n_faces}");
+        assert_eq!(check_cover(&result.mesh, &result.sphere), Ok(()), "{name}");
+    }
+}
+
+#[test]
+fn too_few_quads_to_flow_fall_back_to_the_quad_sphere_and_say_so() {
+    let wanted = Settings {
+        primitive: Some(Primitive::Flow),
+        ..settings(7, Kind::Quads)
+    };
+    let mesh = common::polygons(&common::limbs(2, 8));
+    let result = run(&mesh, &wanted).unwrap();
+    assert_eq!(check_cover(&result.mesh, &result.sphere), Ok(()));
+    match &result.report.parts[0].flow {
+        Some(Flowed::Refused { reason }) => assert!(!reason.is_empty()),
+        other => assert!(matches!(other, Some(Flowed::Used { .. })), "{other:?}"),
     }
 }

@@ -19,9 +19,12 @@ pub mod grid;
 pub mod lines;
 pub mod periods;
 pub mod place;
+pub mod quads;
 pub mod rings;
 pub mod rounding;
 pub mod search;
 pub mod singularities;
 pub mod strips;
 pub mod wish;
+
+pub use quads::{Error, Flow, Report, Settings, flow};

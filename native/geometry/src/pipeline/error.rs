@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::settings::{Kind, MAX_FACES, MIN_FACES, Primitive};
 use crate::progress::Cancelled;
-use crate::{clean, decimate, deform, embed, sphere};
+use crate::{clean, decimate, deform, embed, flow, sphere};
 
 /// Why a run ends without a mesh; nothing was changed.
 #[derive(Debug, Error)]
@@ -67,6 +67,12 @@ pub enum Error {
     /// The primitive could not be made.
     #[error(transparent)]
     Sphere(sphere::AdaptiveError),
+    /// No quads that flow were found.
+    #[error(transparent)]
+    Flow(flow::Error),
+    /// They could not be laid on the sphere.
+    #[error(transparent)]
+    Cover(embed::CoverError),
     /// The primitive could not be laid on the surface.
     #[error(transparent)]
     Deform(deform::Error),
@@ -101,6 +107,8 @@ lift!(
     decimate::Error => Decimate,
     decimate::CollapseError => Collapse,
     embed::Error => Embed,
+    embed::CoverError => Cover,
+    flow::Error => Flow,
     sphere::AdaptiveError => Sphere,
     deform::Error => Deform
 );

@@ -10,6 +10,7 @@
 
 mod clock;
 mod error;
+mod flow;
 mod frame;
 mod join;
 mod part;
@@ -20,6 +21,7 @@ mod verbs;
 
 pub use clock::{Step, peak_memory_mb};
 pub use error::Error;
+pub use flow::Flowed;
 pub use report::{PartReport, Reduced, Report};
 pub use settings::{Kind, MAX_FACES, MIN_FACES, Primitive, Settings};
 pub use verbs::{Decimated, EmbedReport, EmbeddedParts, decimate, embed};
@@ -35,7 +37,7 @@ use crate::{measure, transfer};
 use clock::Clock;
 use frame::Prepared;
 use join::Joined;
-use part::PartJob;
+use part::{PartJob, Wanted};
 
 /// The version of Orbflow.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -173,10 +175,12 @@ fn run_parts(
         let progress = progress.part("", from, share_of_work(done, total));
         let job = PartJob {
             part,
-            n_faces,
-            settings,
-            predictor,
-            reduced: reduced.as_ref(),
+            wanted: Wanted {
+                n_faces,
+                settings,
+                predictor,
+                reduced: reduced.as_ref(),
+            },
         };
         results.push(job.run(clock, &progress)?);
     }

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::Error;
 use super::clock::Clock;
+use super::flow::{Flowed, flow_part};
 use super::report::{PartReport, Reduced};
 use super::settings::{Kind, Primitive, Settings};
 use crate::embed::{Embedded, OffsetPredictor};
@@ -25,6 +26,12 @@ const LEAST_MAP_VERTICES: usize = 3_000;
 /// One part and what is to be made of it.
 pub struct PartJob<'a> {
     pub part: TriangleMesh,
+    pub wanted: Wanted<'a>,
+}
+
+/// What is to be made of a part.
+#[derive(Clone, Copy)]
+pub struct Wanted<'a> {
     pub n_faces: usize,
     pub settings: &'a Settings,
     pub predictor: &'a dyn OffsetPredictor,
@@ -49,51 +56,84 @@ struct Reduction {
 
 impl PartJob<'_> {
     pub fn run(self, clock: &mut Clock, progress: &Progress<'_>) -> Result<PartResult, Error> {
-        let (n_input_faces, area) = (self.part.n_faces(), measure::total_area(&self.part));
-        progress.check()?;
+        let Self { part, wanted } = self;
+        let (n_input_faces, area) = (part.n_faces(), measure::total_area(&part));
         let stage = progress.part("decimate", 0.0, 0.2);
-        let reduction = clock.step("decimate", || self.reduce(&stage))?;
-        let stage = progress.part("embed", 0.2, 0.6);
+        let reduction = clock.step("decimate", || wanted.reduce(&part, &stage))?;
+        let stage = progress.part("embed", 0.2, 0.5);
         let (hierarchy, embedded) = clock.step("embed", || {
             let hierarchy = collapse(reduction.mesh, &stage)?;
-            let embedded = embed_hierarchy(&hierarchy, self.predictor, &stage)?;
+            let embedded = embed_hierarchy(&hierarchy, wanted.predictor, &stage)?;
             Ok::<_, Error>((hierarchy, embedded))
         })?;
         let embedding = embedded.report;
-        let stage = progress.part("sphere", 0.6, 0.8);
-        let placed = clock.step("sphere", || self.place(&hierarchy, embedded.map, &stage))?;
-        let stage = progress.part("deform", 0.8, 1.0);
-        let deformed = clock.step("deform", || {
-            let target = deform::Target::new(self.part, &stage)?;
-            deform::deform(
-                &placed.map,
-                &placed.primitive,
-                &target,
-                &deform::Settings::default(),
-                &stage,
-            )
-        })?;
+        let target = clock.step("deform", || deform::Target::new(part, progress))?;
+        let stage = progress.part("", 0.5, 1.0);
+        let made = wanted.make((&hierarchy, embedded.map), &target, clock, &stage)?;
         let report = PartReport {
             n_input_faces,
-            n_asked_faces: self.n_faces,
-            n_faces: deformed.mesh.n_faces(),
+            n_asked_faces: wanted.n_faces,
+            n_faces: made.deformed.mesh.n_faces(),
             reduced: reduction.reduced,
             decimate: reduction.report,
             embedding,
-            sphere: placed.report,
-            deform: deformed.report,
+            flow: made.flow,
+            sphere: made.sphere,
+            deform: made.deformed.report,
         };
         Ok(PartResult {
-            mesh: deformed.mesh,
-            sphere: deformed.sphere,
+            mesh: made.deformed.mesh,
+            sphere: made.deformed.sphere,
             area,
             report,
         })
     }
+}
+
+impl Wanted<'_> {
+    /// Makes the faces: those that flow, where they are asked for and can be found, else those of
+    /// a primitive.
+    fn make(
+        &self,
+        (hierarchy, map): (&CollapseHierarchy, SphereMap),
+        target: &deform::Target,
+        clock: &mut Clock,
+        progress: &Progress<'_>,
+    ) -> Result<Made, Error> {
+        let mut flow = None;
+        let (mut from, primitive) = (0.0, self.settings.primitive());
+        if primitive == Primitive::Flow {
+            let wanted = (self.n_faces, self.settings.seed);
+            match flow_part(&map, target, wanted, clock, &progress.part("", 0.0, 0.9))? {
+                Ok(part) => {
+                    return Ok(Made {
+                        deformed: part.deformed,
+                        flow: Some(part.flowed),
+                        sphere: Some(part.sphere),
+                    });
+                }
+                Err(reason) => flow = Some(Flowed::Refused { reason }),
+            }
+            from = 0.9;
+        }
+        let stage = progress.part("sphere", from, f64::midpoint(from, 1.0));
+        let placed = clock.step("sphere", || self.place(hierarchy, map, &stage))?;
+        let stage = progress.part("deform", f64::midpoint(from, 1.0), 1.0);
+        let settings = deform::Settings::default();
+        let (map, primitive) = (&placed.map, &placed.primitive);
+        let deformed = clock.step("deform", || {
+            deform::deform(map, primitive, target, &settings, &stage)
+        })?;
+        Ok(Made {
+            deformed,
+            flow,
+            sphere: placed.report,
+        })
+    }
 
     /// Brings the part down to the size of the map.
-    fn reduce(&self, progress: &Progress<'_>) -> Result<Reduction, Error> {
-        let full = Cow::Borrowed(&self.part);
+    fn reduce(&self, part: &TriangleMesh, progress: &Progress<'_>) -> Result<Reduction, Error> {
+        let full = Cow::Borrowed(part);
         let (start, reduced) = match self.reduced.map(|mesh| usable(mesh, &full)) {
             Some(Ok(mesh)) => {
                 let n_faces = mesh.n_faces();
@@ -152,7 +192,9 @@ impl PartJob<'_> {
                     report: Some(report),
                 });
             }
-            Primitive::QuadSphere => sphere::quad_sphere(sphere::quad_sphere_counts(self.n_faces)),
+            Primitive::Flow | Primitive::QuadSphere => {
+                sphere::quad_sphere(sphere::quad_sphere_counts(self.n_faces))
+            }
             Primitive::Icosphere => sphere::icosphere(sphere::icosphere_frequency(self.n_faces)),
         };
         let map = embed::even(hierarchy, &progress.part("", 0.0, 0.8))?;
@@ -167,6 +209,13 @@ impl PartJob<'_> {
             report: None,
         })
     }
+}
+
+/// The faces on the surface, and how they came there.
+struct Made {
+    deformed: deform::Deformed,
+    flow: Option<Flowed>,
+    sphere: Option<sphere::Report>,
 }
 
 /// A primitive and the map that carries it to the surface.

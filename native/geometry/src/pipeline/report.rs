@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::clock::Step;
+use super::flow::Flowed;
 use super::settings::Settings;
 use crate::measure::Topology;
 use crate::score::Score;
@@ -50,7 +51,9 @@ pub struct PartReport {
     pub decimate: Option<decimate::Report>,
     /// Its embedding.
     pub embedding: embed::Report,
-    /// How the adaptive primitive was made; none for a fixed one.
+    /// Whether its quads flow; none when that was not asked for.
+    pub flow: Option<Flowed>,
+    /// How the adaptive primitive, or the even surface for the flow, was made; none for a fixed one.
     pub sphere: Option<sphere::Report>,
     /// How the primitive was laid on the surface.
     pub deform: deform::Report,

@@ -45,6 +45,8 @@ impl Kind {
 pub enum Primitive {
     /// Triangles placed where the surface needs them.
     Adaptive,
+    /// Quads whose edges follow the shape, with irregular vertices where the shape needs them.
+    Flow,
     /// A subdivided box, blown up: quads with eight irregular vertices.
     QuadSphere,
     /// A subdivided icosahedron, blown up: triangles with twelve irregular vertices.
@@ -56,6 +58,7 @@ impl Primitive {
     pub fn name(self) -> &'static str {
         match self {
             Self::Adaptive => "adaptive",
+            Self::Flow => "flow",
             Self::QuadSphere => "quad-sphere",
             Self::Icosphere => "icosphere",
         }
@@ -65,7 +68,7 @@ impl Primitive {
     pub fn kind(self) -> Kind {
         match self {
             Self::Adaptive | Self::Icosphere => Kind::Triangles,
-            Self::QuadSphere => Kind::Quads,
+            Self::Flow | Self::QuadSphere => Kind::Quads,
         }
     }
 }
