@@ -152,8 +152,9 @@ fn edges_on_loops(quads: &[[u32; 4]], leaving: &Leaving, twins: &[usize]) -> usi
 }
 
 #[cfg(test)]
-#[allow(clippy::float_cmp)] // No spiral is exactly none.
 mod tests {
+    #![allow(clippy::float_cmp)] // No spiral is exactly none.
+
     use super::*;
     use crate::sphere::{quad_sphere, quad_sphere_counts};
 
