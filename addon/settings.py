@@ -16,6 +16,7 @@ _KINDS = (
 )
 _PRIMITIVES = (
     ("AUTO", "Automatic", "Quad sphere for quads, adaptive for triangles"),
+    ("FLOW", "Flow", "Quads whose edges follow the shape"),
     ("QUAD_SPHERE", "Quad Sphere", "A subdivided box: even rows of quads, 8 irregular vertices"),
     ("ADAPTIVE", "Adaptive", "Triangles placed where the surface needs them"),
     ("ICOSPHERE", "Icosphere", "A subdivided icosahedron: 12 irregular vertices"),

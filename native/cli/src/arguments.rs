@@ -289,6 +289,7 @@ fn kind() -> ValueParser {
 fn primitive() -> ValueParser {
     const ALL: &[Primitive] = &[
         Primitive::Adaptive,
+        Primitive::Flow,
         Primitive::QuadSphere,
         Primitive::Icosphere,
     ];
