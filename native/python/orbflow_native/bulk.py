@@ -65,9 +65,10 @@ def remesh(
 
     Keeps the topology, the direction of the faces and their materials. `kind` is "quads" or
     "triangles"; `primitive` is "flow", "quad-sphere", "adaptive", "icosphere" or `None` for what
-    suits the kind. `scale` is the scale of the object: faces are even in the scaled space, the result is in
-    the space of the input. `reduced` is the same mesh with fewer triangles, as points (V, 3) and
-    triangles (T, 3); without it, fast-simplification makes it for large meshes where installed.
+    suits the kind. `scale` is the scale of the object: faces are even in the scaled space, the
+    result is in the space of the input. `reduced` is the same mesh with fewer triangles, as
+    points (V, 3) and triangles (T, 3); without it, fast-simplification makes it for large
+    meshes where installed.
     `score_samples` is how many points of each surface the score looks at; 0 makes no score.
     `progress` is called on the calling thread, at most 20 times a second, with the name of the
     step and the share of the work that is done. The same input and settings give the same bytes.

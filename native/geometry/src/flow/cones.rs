@@ -18,7 +18,7 @@ const MOST_FLIPS: usize = 200;
 /// Removes every vertex that is flat and not wanted, and makes the result compact and Delaunay.
 ///
 /// Cones always stay. A flat vertex that no flip frees stays too: the result is as valid, it
-/// just has one more integral point. Costs about 4 µs a vertex.
+/// just has one more integral point.
 ///
 /// # Errors
 /// When cancelled.
