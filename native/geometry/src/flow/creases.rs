@@ -7,7 +7,8 @@
 
 use glam::DVec2;
 
-use crate::flow::field::{OrientationField, quarter_turn};
+use crate::flow::complex::Turn;
+use crate::flow::field::OrientationField;
 use crate::measure::angle_between;
 use crate::mesh::{HalfedgeId, HalfedgeMap, TriangleMesh, VertexId, VertexMap};
 
@@ -69,7 +70,7 @@ pub fn span(
     let mut lines = crease.line.iter().peekable();
     while let Some(&h) = lines.next() {
         // A vector of a frame `turned` quarters further, seen from the first frame.
-        sum += quarter_turn(wish[h], (4 - turned % 4) % 4);
+        sum += wish[h].turned((4 - turned % 4) % 4);
         let Some(&&ahead) = lines.peek() else {
             break;
         };

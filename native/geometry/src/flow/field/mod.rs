@@ -29,7 +29,6 @@ use crate::sparse::NotPositiveDefinite;
 pub use charts::{Charts, halfedges};
 pub use settle::settle;
 pub use shape::{Axes, axes, in_chart};
-pub use turns::quarter_turn;
 
 /// How the field follows the shape.
 #[derive(Clone, Copy, PartialEq, Debug)]

@@ -1,4 +1,5 @@
 use super::*;
+use crate::flow::complex::Turn;
 use crate::mesh::FaceId;
 use crate::shapes;
 
@@ -45,7 +46,7 @@ fn turns_compare_the_crosses_of_neighbours() {
             let d = field.directions[h.face()];
             glam::DVec2::new(d.dot(u), -d.dot(v)).rotate(charts.edge(h))
         };
-        let across = -quarter_turn(in_frame(h), field.turns[h]);
+        let across = -in_frame(h).turned(field.turns[h]);
         worst = worst.max(across.angle_to(in_frame(twin)).abs());
     }
     assert!(worst <= TAU / 8.0 + 1e-9, "{worst}");

@@ -2,20 +2,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use glam::DVec2;
-
 use super::charts::Charts;
 use crate::mesh::{FaceMap, HalfedgeMap, TriangleMesh, VertexMap};
-
-/// i^r w: a vector turned by r quarters, exactly.
-pub fn quarter_turn(w: DVec2, quarters: u8) -> DVec2 {
-    match quarters % 4 {
-        0 => w,
-        1 => w.perp(),
-        2 => -w,
-        _ => -w.perp(),
-    }
-}
 
 /// The turns across all halfedges, and the residuals in quarters, from the angles of the crosses
 /// in their charts.

@@ -4,7 +4,8 @@ use std::collections::VecDeque;
 
 use glam::DVec2;
 
-use crate::flow::field::{halfedges, quarter_turn};
+use crate::flow::complex::Turn;
+use crate::flow::field::halfedges;
 use crate::mesh::{FaceId, FaceMap, HalfedgeId, HalfedgeMap, TriangleMesh, VertexId};
 
 /// Changes vectors as little as it takes for those of each face to sum up to zero and those of
@@ -52,7 +53,7 @@ impl Edges<'_> {
 
     /// The vector of a halfedge's twin.
     fn across(&self, h: HalfedgeId, w: DVec2) -> DVec2 {
-        -quarter_turn(w, self.turns[h])
+        -w.turned(self.turns[h])
     }
 
     fn set(&self, vectors: &mut HalfedgeMap<DVec2>, h: HalfedgeId, w: DVec2) {
@@ -127,7 +128,7 @@ fn shares(edges: &Edges, order: &[HalfedgeId], last: FaceId) -> HalfedgeMap<DVec
             shares[h] += share;
         } else {
             // w_h = −i^r w_twin, r the turn of the twin.
-            shares[twin] -= quarter_turn(share, edges.turns[twin]);
+            shares[twin] -= share.turned(edges.turns[twin]);
         }
     };
     for h in halfedges(last) {
@@ -141,7 +142,7 @@ fn shares(edges: &Edges, order: &[HalfedgeId], last: FaceId) -> HalfedgeMap<DVec
         let share = if h == first {
             share
         } else {
-            -quarter_turn(share, edges.turns[h])
+            -share.turned(edges.turns[h])
         };
         give(&mut shares, h.next(), -share);
         give(&mut shares, h.prev(), -share);

@@ -11,7 +11,8 @@ mod disk;
 use glam::DVec2;
 use thiserror::Error;
 
-use crate::flow::field::{Charts, OrientationField, axes, in_chart, quarter_turn};
+use crate::flow::complex::Turn;
+use crate::flow::field::{Charts, OrientationField, axes, in_chart};
 use crate::mesh::{FaceMap, HalfedgeMap, TriangleMesh};
 use crate::progress::{Cancelled, Progress};
 use crate::sparse::{HermitianMatrix, NotPositiveDefinite};
@@ -57,7 +58,7 @@ pub fn wish(
         .map(|halfedge| {
             let arm = arms[halfedge.face()];
             let in_frame = DVec2::new(arm.x, -arm.y).rotate(charts.edge(halfedge) / h);
-            quarter_turn(in_frame, disk.combed[halfedge.face()])
+            in_frame.turned(disk.combed[halfedge.face()])
         })
         .collect();
     let points = solve(mesh, (&charts, &disk, &field.turns), &wanted)?;
@@ -66,7 +67,7 @@ pub fn wish(
         .halfedge_ids()
         .map(|h| {
             let along = points[disk.classes[h.next()]] - points[disk.classes[h]];
-            quarter_turn(along, 4 - disk.combed[h.face()])
+            along.turned(4 - disk.combed[h.face()])
         })
         .collect();
     close::close(mesh, &field.turns, &mut vectors);
@@ -99,7 +100,7 @@ fn solve(
             continue;
         };
         let combed = 4 + turns[h] + disk.combed[twin.face()] - disk.combed[h.face()];
-        let turned = quarter_turn(DVec2::X, combed);
+        let turned = DVec2::X.turned(combed);
         let jump = [
             (from, -turned),
             (to, turned),

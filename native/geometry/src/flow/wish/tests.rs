@@ -20,7 +20,7 @@ fn faces_close_and_twins_are_quarter_turns_of_each_other() {
             let sum = vectors[h] + vectors[h.next()] + vectors[h.prev()];
             assert!(sum.length() < 1e-12, "{name} {sum}");
             let twin = mesh.twin(h).unwrap();
-            let across = -quarter_turn(vectors[h], field.turns[h]);
+            let across = -vectors[h].turned(field.turns[h]);
             assert!(vectors[twin].distance(across) < 1e-12, "{name}");
         }
     }
