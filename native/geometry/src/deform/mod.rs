@@ -173,11 +173,23 @@ pub fn deform(
             &part,
         )?;
     }
+    let fit = (settings.n_straddles, settings.anchor);
+    fit_to_target(sheet, target, fit, report, progress)
+}
+
+/// The end of every deformation: onto the target, then so many straddling fits with an anchor.
+fn fit_to_target(
+    mut sheet: Sheet,
+    target: &Target,
+    (n_straddles, anchor): (usize, Anchor),
+    mut report: Report,
+    progress: &Progress,
+) -> Result<Deformed, Error> {
     let reach = sheet.mean_edge();
     report.n_unprojected = project::project(&mut sheet, target, reach, progress)?;
-    for round in 0..settings.n_straddles {
-        progress.at(0.7 + 0.3 * round as f64 / settings.n_straddles as f64)?;
-        straddle::straddle(&mut sheet, target, (reach, settings.anchor), progress)?;
+    for round in 0..n_straddles {
+        progress.at(0.7 + 0.3 * round as f64 / n_straddles as f64)?;
+        straddle::straddle(&mut sheet, target, (reach, anchor), progress)?;
     }
     let (mesh, sphere) = sheet.into_mesh();
     debug_assert_eq!(check_cover(&mesh, &sphere), Ok(()));
@@ -234,19 +246,8 @@ pub fn deform_flow(
         settings.n_flow_relaxations,
         &part,
     )?;
-    let reach = sheet.mean_edge();
-    report.n_unprojected = project::project(&mut sheet, target, reach, progress)?;
-    for round in 0..settings.n_straddles {
-        progress.at(0.7 + 0.3 * round as f64 / settings.n_straddles as f64)?;
-        straddle::straddle(&mut sheet, target, (reach, settings.flow_anchor), progress)?;
-    }
-    let (mesh, sphere) = sheet.into_mesh();
-    debug_assert_eq!(check_cover(&mesh, &sphere), Ok(()));
-    Ok(Deformed {
-        mesh,
-        sphere,
-        report,
-    })
+    let fit = (settings.n_straddles, settings.flow_anchor);
+    fit_to_target(sheet, target, fit, report, progress)
 }
 
 impl Flowing<'_> {
