@@ -5,37 +5,35 @@ use std::collections::BTreeMap;
 use glam::{DVec2, IVec2};
 
 use super::Cylinder;
-use super::sight::Sights;
+use super::sight::{SAME, Sights};
 use crate::flow::complex::{Complex, Turn};
 use crate::mesh::{FaceId, HalfedgeId};
 
 /// How far a left border may reach over the line through the cone: rounding.
 const OVER: f64 = 1e-7;
-/// The sine within which two directions are one.
-const SAME: f64 = 1e-9;
 /// More edges than this do not meet at one cone.
 const MOST_TURNS: usize = 200;
 
-/// The cylinder on the right of the line from the first corner to the third of the i-th sight.
+/// The cylinder on the right of the line from the first corner to `period`, the third of the last
+/// triangle seen.
 ///
 /// There the line goes on through the same cone: turning round it on the right has to lead back
 /// to the first corner, in the same frame, after half a turn.
 pub(super) fn close(
     complex: &Complex,
     sights: &Sights,
-    i: usize,
+    period: DVec2,
     narrowest: f64,
 ) -> Option<Cylinder> {
-    let first = sights.sight(0).entered;
-    let last = sights.sight(i);
-    let period = last.right + complex.start[last.entered.next()].turned(last.turns);
+    let first = sights.first().entered;
+    let last = sights.last();
     let along = period / period.length();
-    if sights.back_from(i).any(|s| along.perp_dot(s.left) < -OVER) {
+    if sights.back().any(|s| along.perp_dot(s.left) < -OVER) {
         return None;
     }
-    let widths = sights.back_from(i).map(|s| -along.perp_dot(s.right));
+    let widths = sights.back().map(|s| -along.perp_dot(s.right));
     let mut width = widths.fold(f64::INFINITY, f64::min);
-    let mut entered = sights.entered_to(i);
+    let mut entered = sights.entered();
     let (mut edge, mut turns) = (last.entered.next(), last.turns);
     for _ in 0..MOST_TURNS {
         let leaving = complex.twins[edge];
@@ -54,7 +52,7 @@ pub(super) fn close(
             if !is_back {
                 return None;
             }
-            let [coefficients, _] = coefficients_to(complex, first, &entered);
+            let [coefficients, _] = places(complex, first, &entered);
             return Some(Cylinder {
                 period,
                 width,
@@ -74,8 +72,38 @@ fn is_repeated(entered: &[HalfedgeId]) -> bool {
     (1..n).any(|p| n.is_multiple_of(p) && has_length(p))
 }
 
+/// One triangle of a strip, on the way to the next.
+struct Step {
+    /// The halfedge through which the strip came.
+    entered: HalfedgeId,
+    /// Quarter turns from its frame to the first's.
+    turns: u8,
+    /// Whether its third corner is on the left of the strip.
+    is_left: bool,
+}
+
+/// Follows a strip of triangles from the one of `first` through the given edges.
+fn strip<'a>(
+    complex: &'a Complex,
+    first: HalfedgeId,
+    entered: &'a [HalfedgeId],
+) -> impl Iterator<Item = Step> + 'a {
+    let (mut own, mut turns) = (first, 0);
+    entered.iter().map(move |&next| {
+        let edge = complex.twins[next];
+        let step = Step {
+            entered: own,
+            turns,
+            is_left: edge == own.next(),
+        };
+        turns = (turns + 4 - complex.turns[edge]) % 4;
+        own = next;
+        step
+    })
+}
+
 /// The places of the left and right ends of the last entered edge over the free periods.
-pub(super) fn coefficients_to(
+pub(super) fn places(
     complex: &Complex,
     first: HalfedgeId,
     entered: &[HalfedgeId],
@@ -83,17 +111,9 @@ pub(super) fn coefficients_to(
     let rows = &complex.coefficients;
     let mut left = vec![IVec2::ZERO; rows.n_columns()];
     let mut right = rows.row(first).to_vec();
-    let (mut own, mut turns) = (first, 0);
-    for &next in entered {
-        let apex = apex_row(complex, own, turns, &right);
-        let edge = complex.twins[next];
-        if edge == own.next() {
-            left = apex;
-        } else {
-            right = apex;
-        }
-        turns = (turns + 4 - complex.turns[edge]) % 4;
-        own = next;
+    for step in strip(complex, first, entered) {
+        let apex = apex_row(complex, step.entered, step.turns, &right);
+        *(if step.is_left { &mut left } else { &mut right }) = apex;
     }
     [left, right]
 }
@@ -139,21 +159,12 @@ impl Cylinder {
             return Vec::new();
         };
         let [mut left, mut right] = [DVec2::ZERO, complex.start[first]];
-        let (mut own, mut turns) = (first, 0);
-        let mut shares = Vec::with_capacity(self.entered.len());
-        for &next in &self.entered {
-            let apex = right + complex.start[own.next()].turned(turns);
-            let edge = complex.twins[next];
-            if edge == own.next() {
-                left = apex;
-            } else {
-                right = apex;
-            }
-            turns = (turns + 4 - complex.turns[edge]) % 4;
-            own = next;
+        let share = |step: Step| {
+            let apex = right + complex.start[step.entered.next()].turned(step.turns);
+            *(if step.is_left { &mut left } else { &mut right }) = apex;
             let [l, r] = [along.perp_dot(left), along.perp_dot(right)];
-            shares.push(((l + 0.5 * self.width) / (l - r)).clamp(0.0, 1.0));
-        }
-        shares
+            ((l + 0.5 * self.width) / (l - r)).clamp(0.0, 1.0)
+        };
+        strip(complex, first, &self.entered).map(share).collect()
     }
 }

@@ -32,6 +32,8 @@ pub struct Reach {
     pub narrowest: f64,
     /// How far a period's direction may be from an axis, in radians.
     pub angle: f64,
+    /// How far its end may be off the axis.
+    pub aside: f64,
     /// The most edges that one line crosses.
     pub n_crossed: usize,
 }

@@ -15,6 +15,7 @@ const REACH: Reach = Reach {
     longest: 40.0,
     narrowest: 1.0,
     angle: 0.05,
+    aside: f64::INFINITY,
     n_crossed: 40,
 };
 

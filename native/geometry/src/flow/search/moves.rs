@@ -33,6 +33,7 @@ impl Moves {
             longest: 2.0 * problem.n_quads.sqrt(),
             narrowest: 1.5,
             angle: 0.35,
+            aside: MOST_OFF,
             n_crossed: 100,
         };
         let found = cylinders(&state.complex, &reach);

@@ -77,6 +77,7 @@ fn pool(problem: &Problem) -> Vec<Cylinder> {
         longest: 1.6 * problem.n_quads.sqrt(),
         narrowest: 1.2,
         angle: 0.6,
+        aside: f64::INFINITY,
         n_crossed: 80,
     };
     cylinders(&wished.complex, &reach)
