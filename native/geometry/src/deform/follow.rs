@@ -6,14 +6,21 @@ use glam::DVec3;
 
 use super::cover::Cover;
 use super::sheet::{Point, Sheet};
-use crate::mesh::{FaceMap, VertexId};
+use crate::mesh::{FaceMap, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
 
 /// Share of an edge's own length in the length that is wanted; the rest is the mean of all. At 0
 /// quads near irregular vertices are sheared, at 0.5 lengths even out too slowly.
-const OWN_LENGTH: f64 = 0.2;
+const OWN_LENGTH: f64 = 0.1;
 /// Share of the way that a vertex goes at once.
 const DAMPING: f64 = 0.7;
+/// Share of its last way that a vertex goes on for. Without it lengths even out too slowly over
+/// long ways; from 0.7 on vertices swing.
+const MOMENTUM: f64 = 0.6;
+/// Rounds in which vertices of inverted faces may move without guard: it would keep knots closed.
+const N_LOOSE: usize = 30;
+/// Shares of the way to the middle of its neighbours that such a vertex tries.
+const LOOSENINGS: [f64; 2] = [1.0, 0.3];
 /// Quality that no move may spoil: below it a move must make the worst face at the vertex better.
 const GUARDED_QUALITY: f64 = 0.7;
 /// Below this quality a vertex that is stuck tries places around it.
@@ -74,6 +81,7 @@ pub(super) fn follow(
 ) -> Result<usize, Cancelled> {
     let stars = Stars::new(sheet);
     let mut n_refused = 0;
+    let mut ways = VertexMap::filled(sheet.n_vertices(), DVec3::ZERO);
     for round in 0..n_rounds {
         progress.at(round as f64 / n_rounds as f64)?;
         let length = sheet.mean_edge();
@@ -88,15 +96,36 @@ pub(super) fn follow(
             if sheet.is_pinned(v) {
                 continue;
             }
-            let step = wish(sheet, crosses, (v, stars.of(v)), length);
-            let step = DAMPING * climb(sheet, cover, v, step);
+            let star = stars.of(v);
+            if round < N_LOOSE && loosen(sheet, v, star) {
+                continue;
+            }
+            let step = wish(sheet, crosses, (v, star), length);
+            let step = DAMPING * climb(sheet, cover, v, step) + MOMENTUM * ways[v];
+            let before = sheet.position(v);
             let moved = slide(sheet, v, step, GUARDED_QUALITY)
                 || slide(sheet, v, step * 0.5, GUARDED_QUALITY)
                 || mend(sheet, v, length);
+            ways[v] = sheet.position(v) - before;
             n_refused += usize::from(!moved);
         }
     }
     Ok(n_refused)
+}
+
+/// Moves a vertex of an inverted face towards the middle of its neighbours, guarded by nothing but
+/// the folds on the sphere; false where there is no such face or no way.
+fn loosen(sheet: &mut Sheet, vertex: VertexId, star: &[VertexId]) -> bool {
+    let now = *sheet.point(vertex);
+    if sheet.worst_quality(vertex, &now) >= 0.0 {
+        return false;
+    }
+    let sum: DVec3 = star.iter().map(|&other| sheet.position(other)).sum();
+    let middle = sum / star.len() as f64;
+    LOOSENINGS.iter().any(|&share| {
+        let there = sheet.walked(vertex, now.position.lerp(middle, share));
+        sheet.try_move(vertex, there)
+    })
 }
 
 /// Moves a vertex along the surface if that neither folds the sphere nor brings the worst face

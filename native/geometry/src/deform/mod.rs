@@ -27,6 +27,7 @@ mod straddle;
 mod target;
 #[cfg(test)]
 mod tests;
+mod untangle;
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -65,11 +66,11 @@ impl Default for Settings {
         Self {
             n_relaxations: 4,
             n_quad_relaxations: 0,
-            n_flow_relaxations: 60,
+            n_flow_relaxations: 40,
             n_straddles: 2,
             anchor: Anchor::default(),
             flow_anchor: Anchor {
-                along: 0.2,
+                along: 0.5,
                 ..Anchor::default()
             },
         }
@@ -100,6 +101,8 @@ pub struct Report {
     pub n_stuck: usize,
     /// How many vertices did not get all the way onto the full-resolution surface.
     pub n_unprojected: usize,
+    /// How many moves of vertices in space it took to open inverted quads that flow.
+    pub n_opened: usize,
 }
 
 /// Why a primitive cannot be deformed.
@@ -174,30 +177,36 @@ pub fn deform(
         )?;
     }
     let fit = (settings.n_straddles, settings.anchor);
-    fit_to_target(sheet, target, fit, report, progress)
+    report.n_unprojected = fit_to_target(&mut sheet, target, fit, progress)?;
+    Ok(Deformed::new(sheet, report))
 }
 
 /// The end of every deformation: onto the target, then so many straddling fits with an anchor.
 fn fit_to_target(
-    mut sheet: Sheet,
+    sheet: &mut Sheet,
     target: &Target,
     (n_straddles, anchor): (usize, Anchor),
-    mut report: Report,
     progress: &Progress,
-) -> Result<Deformed, Error> {
+) -> Result<usize, Cancelled> {
     let reach = sheet.mean_edge();
-    report.n_unprojected = project::project(&mut sheet, target, reach, progress)?;
+    let n_unprojected = project::project(sheet, target, reach, progress)?;
     for round in 0..n_straddles {
         progress.at(0.7 + 0.3 * round as f64 / n_straddles as f64)?;
-        straddle::straddle(&mut sheet, target, (reach, anchor), progress)?;
+        straddle::straddle(sheet, target, (reach, anchor), progress)?;
     }
-    let (mesh, sphere) = sheet.into_mesh();
-    debug_assert_eq!(check_cover(&mesh, &sphere), Ok(()));
-    Ok(Deformed {
-        mesh,
-        sphere,
-        report,
-    })
+    Ok(n_unprojected)
+}
+
+impl Deformed {
+    fn new(sheet: Sheet, report: Report) -> Self {
+        let (mesh, sphere) = sheet.into_mesh();
+        debug_assert_eq!(check_cover(&mesh, &sphere), Ok(()));
+        Self {
+            mesh,
+            sphere,
+            report,
+        }
+    }
 }
 
 /// Rounds in which flowing quads are led to where they are wanted; later ones move next to nothing.
@@ -217,7 +226,8 @@ pub struct Flowing<'a> {
 /// Deforms quads that flow into the target's surface, so that their edges keep to the crosses.
 ///
 /// As [`deform`] but for the relaxation: connections stay, edges turn along the crosses and get
-/// one length, and quads that are sheared in the end are mended as far as they can be.
+/// one length, and quads that are sheared in the end are mended as far as they can be. The last
+/// inverted ones are opened by moves in space, which leave the sphere points as they are.
 ///
 /// # Errors
 /// A primitive that is not a sphere of triangles and quads, and [`Cancelled`].
@@ -247,7 +257,9 @@ pub fn deform_flow(
         &part,
     )?;
     let fit = (settings.n_straddles, settings.flow_anchor);
-    fit_to_target(sheet, target, fit, report, progress)
+    report.n_unprojected = fit_to_target(&mut sheet, target, fit, progress)?;
+    report.n_opened = untangle::untangle(&mut sheet, progress)?;
+    Ok(Deformed::new(sheet, report))
 }
 
 impl Flowing<'_> {

@@ -19,6 +19,7 @@ mod proposal;
 mod repair;
 mod rest;
 mod room;
+mod settle;
 mod solver;
 
 use glam::DVec3;

@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 use thiserror::Error;
 
+use super::stars;
 use crate::mesh::{VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
 use crate::sparse::{NotPositiveDefinite, SymmetricMatrix};
@@ -46,7 +47,8 @@ pub enum PlaceError {
 
 /// Finds positions for `n_vertices` vertices of quads, given where the surface's vertices lie.
 ///
-/// Minimises Σ |bilinear(quad; s, t) − x|² + 0.05 Σ |umbrella|². The point on the sphere is found by
+/// Minimises Σ |bilinear(quad; s, t) − x|² + 0.05 Σ |umbrella|². The point on the sphere is that of
+/// the surface's face that covers the vertex in the quads. Where there is none it is found by
 /// a walk on the surface, from the vertex nearest in the quads to the position in space: it stays
 /// on its own finger. One factorisation.
 ///
@@ -78,9 +80,11 @@ pub fn place(
     matrix.factorize()?.solve_vectors(&mut positions);
     progress.at(0.8)?;
     let starts = nearest_vertices((n_vertices, quads), cells);
-    let sphere = positions.iter().zip(starts).map(|(&position, start)| {
-        let walked = |v| map.sphere_position(walk_along(map, at_vertex(map, v), position));
-        start.map_or(DVec3::ZERO, walked)
+    let found = stars::locate(map.mesh(), (n_vertices, quads), cells);
+    let sphere = (0..n_vertices).map(|v| {
+        let walk = |start| walk_along(map, at_vertex(map, start), positions[v]);
+        let place = found[v].or_else(|| starts[v].map(walk));
+        place.map_or(DVec3::ZERO, |place| map.sphere_position(place))
     });
     let sphere = sphere.collect();
     Ok(Placed { positions, sphere })

@@ -1,0 +1,127 @@
+//! Untangling: inverted and nearly inverted faces are opened, vertex by vertex, in space.
+//!
+//! On limbs thinner than a face there may be no place on the surface for a vertex whose faces are
+//! all good. Near it there is: a vertex of a bad face goes to the best of some places around it,
+//! off the surface too, where it pays for the distance. Sphere points stay, so nothing folds there.
+
+use std::f64::consts::TAU;
+
+use glam::DVec3;
+
+use super::sheet::{Point, Sheet};
+use crate::mesh::{VertexId, VertexMap};
+use crate::progress::{Cancelled, Progress};
+
+/// Quality below which a face is opened.
+const BAD: f64 = 0.15;
+/// And up to which it is opened.
+const ENOUGH: f64 = 0.3;
+/// How far away the places are that a vertex tries, in mean edges.
+const REACHES: [f64; 5] = [0.4, 0.2, 0.1, 0.05, 0.02];
+/// And in how many directions along the surface.
+const N_WAYS: u32 = 8;
+/// Rounds over the vertices of bad faces; most are open after five.
+const N_ROUNDS: usize = 40;
+/// What a vertex a mean edge away from where it was costs, against 0.09 for a face without area.
+const COST: f64 = 0.02;
+/// The least share by which a move has to lower the sum of both.
+const LEAST_GAIN: f64 = 1e-6;
+
+/// Moves the vertices of bad faces in space until none is left or no move helps; returns how many
+/// moves that took.
+pub(super) fn untangle(sheet: &mut Sheet, progress: &Progress) -> Result<usize, Cancelled> {
+    let edge = sheet.mean_edge();
+    let ids = sheet.vertex_ids();
+    let starts: VertexMap<DVec3> = ids.map(|v| sheet.position(v)).collect();
+    let mut n_moves = 0;
+    for _ in 0..N_ROUNDS {
+        progress.check()?;
+        let before = n_moves;
+        for v in bad_vertices(sheet) {
+            n_moves += usize::from(!sheet.is_pinned(v) && open(sheet, v, edge, starts[v]));
+        }
+        if n_moves == before {
+            break;
+        }
+    }
+    Ok(n_moves)
+}
+
+/// The vertices of bad faces, each once.
+fn bad_vertices(sheet: &Sheet) -> Vec<VertexId> {
+    let bad = sheet
+        .faces()
+        .iter_ids()
+        .filter(|&(id, _)| sheet.quality(id) < BAD);
+    let mut vertices: Vec<_> = bad.flat_map(|(_, face)| face.corners().to_vec()).collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    vertices
+}
+
+/// Moves a vertex to the best place around it; false if it stands there.
+fn open(sheet: &mut Sheet, v: VertexId, edge: f64, start: DVec3) -> bool {
+    let now = *sheet.point(v);
+    let cost = |position: DVec3| {
+        let there = Point { position, ..now };
+        let way = position.distance_squared(start) / (edge * edge);
+        sheet.badness(v, &there, ENOUGH) + COST * way
+    };
+    let (x, y) = now.normal.any_orthonormal_pair();
+    let along = (0..N_WAYS).map(|i| {
+        let (sin, cos) = (f64::from(i) * TAU / f64::from(N_WAYS)).sin_cos();
+        x * cos + y * sin
+    });
+    let ways: Vec<DVec3> = along.chain([now.normal, -now.normal]).collect();
+    let before = cost(now.position);
+    let mut best = (before, now.position);
+    for reach in REACHES {
+        for way in &ways {
+            let there = now.position + *way * (reach * edge);
+            let cost = cost(there);
+            if cost < best.0 {
+                best = (cost, there);
+            }
+        }
+    }
+    let moves = best.0 < before * (1.0 - LEAST_GAIN);
+    if moves {
+        sheet.lift(v, best.1);
+    }
+    moves
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::vertex_normals;
+    use crate::shapes;
+    use crate::sphere::quad_sphere;
+    use crate::sphere_map::SphereMap;
+
+    #[test]
+    fn inverted_faces_are_opened_and_the_rest_stays() {
+        let mesh = shapes::sphere(12);
+        let sphere = mesh.positions().iter().copied().collect();
+        let map = SphereMap::prove(mesh, sphere).unwrap();
+        let mut sheet = Sheet::new(&map, vertex_normals(map.mesh()), &quad_sphere([6, 6, 6]));
+        let edge = sheet.mean_edge();
+        for i in (0..sheet.n_vertices() as u32).step_by(31) {
+            let v = VertexId(i);
+            let normal = sheet.point(v).normal;
+            let away = normal.any_orthonormal_vector() * (1.3 * edge);
+            sheet.lift(v, sheet.position(v) + away);
+        }
+        let moved = bad_vertices(&sheet);
+        let before: VertexMap<DVec3> = sheet.vertex_ids().map(|v| sheet.position(v)).collect();
+        assert!(!moved.is_empty());
+        let n_moves = untangle(&mut sheet, &Progress::none()).unwrap();
+        assert!(n_moves > 0);
+        assert!(sheet.faces().ids().all(|face| sheet.quality(face) > 0.0));
+        let n_stayed = sheet
+            .vertex_ids()
+            .filter(|&v| sheet.position(v) == before[v]);
+        assert!(2 * n_stayed.count() > sheet.n_vertices());
+        assert_eq!(untangle(&mut sheet, &Progress::none()).unwrap(), 0);
+    }
+}
