@@ -5,7 +5,8 @@ use faer::{Mat, Side};
 use glam::DVec2;
 
 use super::complex::Complex;
-use super::periods::{dot, evaluate};
+use super::periods::dot;
+use crate::mesh::HalfedgeId;
 
 /// The bounds of an edge's weight: a needle must not outweigh the rest, nor an edge count nothing.
 const WEIGHTS: [f64; 2] = [0.1, 3.0];
@@ -30,10 +31,7 @@ impl Dense {
             let mean = 0.5 * (complex.cotangent(h) + complex.cotangent(complex.twins[h]));
             let weight = mean.clamp(WEIGHTS[0], WEIGHTS[1]);
             let row = complex.coefficients.row(h);
-            let used: Vec<(usize, DVec2)> = (row.iter().enumerate())
-                .filter(|(_, c)| **c != glam::IVec2::ZERO)
-                .map(|(j, c)| (j, c.as_dvec2()))
-                .collect();
+            let used: Vec<(usize, DVec2)> = row.map(|(j, c)| (j, c.as_dvec2())).collect();
             for &(i, a) in &used {
                 for &(j, b) in &used {
                     // conj(a) b as a 2 × 2 real block.
@@ -139,9 +137,13 @@ impl Dense {
 /// The mean squared distance of a metric from a wish: per unit of area, so that it has no scale.
 pub fn energy(complex: &Complex, wish: &[f64]) -> f64 {
     let of = |h| {
-        let weight = 0.5 * complex.cotangent(h).clamp(0.05, 3.0);
-        let wished = evaluate(complex.coefficients.row(h), wish);
-        weight * complex.start[h].distance_squared(wished)
+        let wished = complex.coefficients.value(h, wish);
+        energy_weight(complex, h) * complex.start[h].distance_squared(wished)
     };
     complex.halfedge_ids().map(of).sum::<f64>() / complex.area()
+}
+
+/// What the squared distance of a halfedge's vector counts in [`energy`].
+pub fn energy_weight(complex: &Complex, h: HalfedgeId) -> f64 {
+    0.5 * complex.cotangent(h).clamp(0.05, 3.0)
 }

@@ -5,11 +5,12 @@
 //! is two cones that meet. Nothing is ever torn, so whatever is reached has the topology and the
 //! cone angles of the start.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use std::sync::Arc;
 
-use super::complex::{Complex, LocatedPoints};
-use super::periods::{Periods, evaluate};
+use super::complex::{Complex, LocatedPoints, Turn};
+use super::periods::Periods;
+use crate::mesh::Id;
 
 /// The shortest edge that a metric may get on the way to whole periods. A wish with a collapsed
 /// edge stops every drag at once if this is large (0.2 failed on all people).
@@ -95,7 +96,12 @@ impl State {
 /// Drags all vectors towards those of the periods; overwrites `wish`, which flips carry along.
 fn drag(complex: &mut Complex, to: &[f64], short: f64) -> f64 {
     for h in complex.halfedge_ids() {
-        complex.wish[h] = evaluate(complex.coefficients.row(h), to);
+        let twin = complex.twins[h];
+        if h < twin {
+            let wish = complex.coefficients.value(h, to);
+            complex.wish[h] = wish;
+            complex.wish[twin] = -wish.turned(complex.turns[h]);
+        }
     }
     let [mut done, mut step] = [0.0, 1.0_f64];
     let mut before = complex.start.clone();
@@ -151,18 +157,49 @@ fn is_valid(complex: &Complex, before: &[glam::DVec2], short: f64) -> bool {
         own[0].perp_dot(own[1]) >= flat && !(0..3).any(shrinks)
     };
     let faces = vectors.as_chunks::<3>().0.iter();
-    faces.zip(before.as_chunks::<3>().0).all(are_sound) && has_angles(complex)
+    faces.zip(before.as_chunks::<3>().0).all(are_sound) && has_turns(complex)
+}
+
+/// Whether no angle at a vertex is off by a turn; all faces are positive.
+///
+/// Vectors agree across edges, so that an angle is never off by less, and roughly is enough.
+fn has_turns(complex: &Complex) -> bool {
+    let mut miss = shortfall(complex);
+    let faces = complex.start.as_slice().as_chunks::<3>().0;
+    let origins = complex.origins.as_slice().as_chunks::<3>().0;
+    for (&[a, b, c], origins) in faces.iter().zip(origins) {
+        let area = a.perp_dot(b);
+        for (origin, dot) in origins.iter().zip([a.dot(c), b.dot(a), c.dot(b)]) {
+            miss[origin.index()] += rough_angle(-dot, area);
+        }
+    }
+    miss.iter().all(|miss| miss.abs() < PI)
+}
+
+/// The angle of a vector of the upper half plane from the x axis, within 0.004.
+fn rough_angle(x: f64, y: f64) -> f64 {
+    let [long, short] = [x.abs().max(y), x.abs().min(y)];
+    let ratio = short / long;
+    let octant = ratio * (FRAC_PI_4 + 0.273 * (1.0 - ratio));
+    let quadrant = if x.abs() < y {
+        FRAC_PI_2 - octant
+    } else {
+        octant
+    };
+    if x < 0.0 { PI - quadrant } else { quadrant }
+}
+
+/// Less the angle that belongs to each vertex by its index.
+fn shortfall(complex: &Complex) -> Vec<f64> {
+    let wanted = |&k: &i32| f64::from(k - 4) * FRAC_PI_2;
+    complex.indices.iter().map(wanted).collect()
 }
 
 /// Whether the angle at each vertex is that of its index.
 pub fn has_angles(complex: &Complex) -> bool {
-    let mut miss: Vec<f64> = complex
-        .indices
-        .iter()
-        .map(|&k| f64::from(k - 4) * FRAC_PI_2)
-        .collect();
+    let mut miss = shortfall(complex);
     for h in complex.halfedge_ids() {
-        miss[complex.origins[h].0 as usize] += complex.angle(h);
+        miss[complex.origins[h].index()] += complex.angle(h);
     }
     miss.iter().all(|miss| miss.abs() < ANGLE)
 }
@@ -213,6 +250,15 @@ mod tests {
             .map(|v| v.length())
             .fold(9.0, f64::min);
         assert!(shortest >= 2.0);
+    }
+
+    #[test]
+    fn rough_angles_are_near() {
+        for i in 1..2000 {
+            let angle = f64::from(i) * PI / 2000.0;
+            let (y, x) = angle.sin_cos();
+            assert!((rough_angle(7.0 * x, 7.0 * y) - angle).abs() < 4e-3);
+        }
     }
 
     #[test]

@@ -6,7 +6,7 @@
 //! other two, so that following them is counting. Agrees with [`super::strips::strips`] on the
 //! grid when every vertex is a cone: a line through a flat vertex is not seen as a loop.
 
-use glam::{DVec2, I64Vec2};
+use glam::I64Vec2;
 
 use super::complex::Complex;
 use super::strips::Strips;
@@ -24,12 +24,24 @@ struct Crossing {
     step: usize,
 }
 
+/// What one axis says of a side of a face, in doubled levels.
+#[derive(Clone, Copy)]
+struct Gate {
+    /// Where the crossings of the side begin.
+    first: usize,
+    /// How many levels it spans.
+    span: usize,
+    /// The side of its face that all lines of the axis cross, its levels, and those of the side
+    /// before it.
+    widest: HalfedgeId,
+    whole: usize,
+    before: usize,
+}
+
 struct Tracer<'a> {
     complex: &'a Complex,
-    /// The absolute difference of x and y along each halfedge.
-    spans: Vec<[usize; 2]>,
-    /// Where the crossings of each halfedge and axis begin.
-    firsts: Vec<[usize; 2]>,
+    /// The gates of each halfedge, by axis.
+    gates: Vec<[Gate; 2]>,
     /// The line of each crossing.
     lines: Vec<u32>,
 }
@@ -47,7 +59,7 @@ pub fn trace(complex: &Complex) -> Strips {
     let mut lines = Vec::new();
     for side in complex.halfedge_ids() {
         for axis in [0, 1] {
-            for step in 1..(2 * tracer.spans[side.index()][axis]).max(1) {
+            for step in 1..tracer.gate(side, axis).span.max(1) {
                 let start = Crossing { side, axis, step };
                 if tracer.lines[tracer.place(start)] == NONE {
                     lines.push(tracer.follow(start, lines.len() as u32));
@@ -55,9 +67,10 @@ pub fn trace(complex: &Complex) -> Strips {
             }
         }
     }
+    let mut last_face = vec![NONE; lines.len()];
     let n_spiral = complex
         .face_ids()
-        .map(|f| tracer.meetings(f, &mut lines))
+        .map(|f| tracer.meetings(f, &mut lines, &mut last_face))
         .sum::<usize>();
     let looped = lines.iter().filter(|line| line.is_loop && !line.is_middle);
     let area = complex.area();
@@ -70,60 +83,82 @@ pub fn trace(complex: &Complex) -> Strips {
 
 impl<'a> Tracer<'a> {
     fn new(complex: &'a Complex) -> Self {
-        let span = |v: &DVec2| [v.x, v.y].map(|x| x.abs().round() as usize);
-        let spans: Vec<[usize; 2]> = complex.start.iter().map(span).collect();
         let mut n = 0;
-        let mut first = |span: usize| {
-            n += 2 * span;
-            n - 2 * span
-        };
-        let firsts = spans.iter().map(|s| [first(s[0]), first(s[1])]).collect();
+        let mut gates = Vec::with_capacity(complex.twins.len());
+        for face in complex.face_ids() {
+            let h = complex.halfedge(face);
+            let names = [h, h.next(), h.prev()];
+            let spans = names.map(|e| {
+                let levels = |x: f64| 2 * x.abs().round() as usize;
+                let vector = complex.start[e];
+                [levels(vector.x), levels(vector.y)]
+            });
+            let widest = [0, 1].map(|axis| {
+                let wider = |a: usize, b: usize| {
+                    if spans[b][axis] > spans[a][axis] {
+                        b
+                    } else {
+                        a
+                    }
+                };
+                wider(wider(0, 1), 2)
+            });
+            for own in spans {
+                gates.push([0, 1].map(|axis| {
+                    let at = widest[axis];
+                    n += own[axis];
+                    Gate {
+                        first: n - own[axis],
+                        span: own[axis],
+                        widest: names[at],
+                        whole: spans[at][axis],
+                        before: spans[(at + 2) % 3][axis],
+                    }
+                }));
+            }
+        }
+        let lines = vec![NONE; n];
         Self {
             complex,
-            spans,
-            firsts,
-            lines: vec![NONE; n],
+            gates,
+            lines,
         }
     }
 
+    fn gate(&self, side: HalfedgeId, axis: usize) -> &Gate {
+        &self.gates[side.index()][axis]
+    }
+
     fn place(&self, crossing: Crossing) -> usize {
-        self.firsts[crossing.side.index()][crossing.axis] + crossing.step
+        self.gate(crossing.side, crossing.axis).first + crossing.step
     }
 
-    fn span(&self, side: HalfedgeId, axis: usize) -> usize {
-        self.spans[side.index()][axis]
-    }
-
-    /// The side of a face that all lines of an axis cross.
-    fn widest(&self, face: FaceId, axis: usize) -> HalfedgeId {
-        let h = self.complex.halfedge(face);
-        let wider = |a, b| {
-            if self.span(b, axis) > self.span(a, axis) {
-                b
-            } else {
-                a
-            }
-        };
-        wider(wider(h, h.next()), h.prev())
+    /// How far along the widest side of its face the line through a crossing meets it.
+    fn along_widest(&self, from: Crossing) -> usize {
+        let gate = self.gate(from.side, from.axis);
+        if from.side == gate.widest.next() {
+            gate.whole - from.step
+        } else if from.side == gate.widest.prev() {
+            gate.before - from.step
+        } else {
+            from.step
+        }
     }
 
     /// Where the line through a crossing leaves the face; none at a vertex.
     fn through(&self, from: Crossing) -> Option<Crossing> {
-        let Crossing { side, axis, step } = from;
-        let widest = self.widest(side.face(), axis);
-        let [whole, before] = [widest, widest.prev()].map(|h| 2 * self.span(h, axis));
-        let (side, step) = if side == widest.next() {
-            (widest, whole - step)
-        } else if side == widest.prev() {
-            (widest, before - step)
-        } else if step < before {
-            (widest.prev(), before - step)
-        } else if step > before {
-            (widest.next(), whole - step)
+        let gate = self.gate(from.side, from.axis);
+        let along = self.along_widest(from);
+        let (side, step) = if from.side != gate.widest {
+            (gate.widest, along)
+        } else if along < gate.before {
+            (gate.widest.prev(), gate.before - along)
+        } else if along > gate.before {
+            (gate.widest.next(), gate.whole - along)
         } else {
             return None;
         };
-        Some(Crossing { side, axis, step })
+        Some(Crossing { side, step, ..from })
     }
 
     /// The same crossing seen from the other face.
@@ -131,28 +166,20 @@ impl<'a> Tracer<'a> {
         Crossing {
             side: self.complex.twins[from.side],
             axis: from.axis ^ usize::from(self.complex.turns[from.side] % 2),
-            step: 2 * self.span(from.side, from.axis) - from.step,
+            step: self.gate(from.side, from.axis).span - from.step,
         }
     }
 
     /// How long the line through a crossing is inside its face.
     fn chord(&self, at: Crossing) -> f64 {
-        let widest = self.widest(at.side.face(), at.axis);
-        let [whole, after, before] =
-            [widest, widest.next(), widest.prev()].map(|h| 2.0 * self.span(h, at.axis) as f64);
-        let step = at.step as f64;
-        let from_origin = if at.side == widest.next() {
-            whole - step
-        } else if at.side == widest.prev() {
-            before - step
-        } else {
-            step
-        };
+        let gate = self.gate(at.side, at.axis);
+        let [whole, before, along] =
+            [gate.whole, gate.before, self.along_widest(at)].map(|x| x as f64);
         let longest = 2.0 * self.complex.double_area(at.side.face()) / whole;
-        if from_origin <= before {
-            longest * from_origin / before
+        if along <= before {
+            longest * along / before
         } else {
-            longest * (whole - from_origin) / after
+            longest * (whole - along) / (whole - before)
         }
     }
 
@@ -169,7 +196,9 @@ impl<'a> Tracer<'a> {
             let Some(out) = self.through(at) else {
                 return line;
             };
-            line.length += self.chord(at);
+            if !line.is_middle {
+                line.length += self.chord(at);
+            }
             let place = self.place(out);
             self.lines[place] = name;
             at = self.across(out);
@@ -181,29 +210,36 @@ impl<'a> Tracer<'a> {
     }
 
     /// Where the lines of a face cross themselves: counts middles, and loops are none any more.
-    fn meetings(&self, face: FaceId, lines: &mut [Line]) -> usize {
+    ///
+    /// `last_face` keeps for each line the last face of which a line of the first axis it is.
+    fn meetings(&self, face: FaceId, lines: &mut [Line], last_face: &mut [u32]) -> usize {
         let h = self.complex.halfedge(face);
         let sides = [h, h.next(), h.prev()].map(|e| (2.0 * self.complex.start[e]).as_i64vec2());
         let corners = [I64Vec2::ZERO, sides[0], sides[0] + sides[1]];
-        let [low, high] = [
-            corners[0].min(corners[1]).min(corners[2]),
-            corners[0].max(corners[1]).max(corners[2]),
-        ];
-        let widest = [0, 1].map(|axis| self.widest(face, axis));
+        let low = corners[0].min(corners[1]).min(corners[2]);
+        let high = corners[0].max(corners[1]).max(corners[2]);
+        let gates = [0, 1].map(|axis| self.gate(h, axis));
         let name = |level: i64, axis: usize| {
-            let origin = corners[widest[axis].corner()][axis];
-            let first = self.firsts[widest[axis].index()][axis];
-            self.lines[first + (level - origin).unsigned_abs() as usize]
+            let widest = gates[axis].widest;
+            let origin = corners[widest.corner()][axis];
+            let step = (level - origin).unsigned_abs() as usize;
+            self.lines[self.gate(widest, axis).first + step]
         };
+        for x in low.x + 1..high.x {
+            last_face[name(x, 0) as usize] = face.0;
+        }
         let mut n_middles = 0;
         for y in low.y + 1..high.y {
+            let line = name(y, 1);
+            if last_face[line as usize] != face.0 {
+                continue;
+            }
             for x in (low.x + 1..high.x).filter(|x| (x - y) % 2 == 0) {
-                let [one, other] = [name(x, 0), name(y, 1)];
-                if one != other || !self.owns(h, [corners, sides], I64Vec2::new(x, y)) {
+                if name(x, 0) != line || !self.owns(h, [corners, sides], I64Vec2::new(x, y)) {
                     continue;
                 }
                 if y % 2 == 0 {
-                    lines[one as usize].is_loop = false;
+                    lines[line as usize].is_loop = false;
                 } else {
                     n_middles += 1;
                 }

@@ -53,11 +53,10 @@ impl Rounding {
         }
     }
 
-    /// Makes all periods whole. `axis_bonus` is the distance that a period on an axis gets for
-    /// free: it lines cones up.
+    /// Makes all periods whole.
     ///
     /// None when a period has no whole value that can be reached.
-    pub fn round(mut self, axis_bonus: f64) -> Option<State> {
+    pub fn round(mut self) -> Option<State> {
         let n = self.wish.len() / 2;
         let mut is_fixed: Vec<bool> = (0..n)
             .map(|j| self.free_components(j).next().is_none())
@@ -65,7 +64,7 @@ impl Rounding {
         while let Some(j) = self.next_period(&is_fixed) {
             let pulls = self.pulls(j);
             let found = self
-                .candidates(j, axis_bonus)
+                .candidates(j)
                 .into_iter()
                 .any(|value| self.try_value(&pulls, value));
             if !found {
@@ -138,7 +137,7 @@ impl Rounding {
     }
 
     /// Whole values of a period, the most wanted first.
-    fn candidates(&self, j: usize, axis_bonus: f64) -> Vec<DVec2> {
+    fn candidates(&self, j: usize) -> Vec<DVec2> {
         let wished = Self::period(&self.wish, j);
         let own = Self::period(&self.state.periods, j);
         let mut wanted = wished;
@@ -162,17 +161,8 @@ impl Rounding {
                 }
             }
         }
-        let on_axis = |v: DVec2| {
-            if v.x == 0.0 || v.y == 0.0 {
-                axis_bonus
-            } else {
-                0.0
-            }
-        };
-        candidates.sort_by(|&a, &b| {
-            let cost = |v: DVec2| v.distance(wanted) - on_axis(v);
-            cost(a).total_cmp(&cost(b))
-        });
+        let miss = |v: &DVec2| v.distance_squared(wanted);
+        candidates.sort_by(|a, b| miss(a).total_cmp(&miss(b)));
         candidates.truncate(MOST_CANDIDATES);
         candidates
     }
@@ -253,7 +243,6 @@ mod tests {
         #[test]
         fn rounded_boxes_are_whole_and_valid(
             scale in 0.2..1.5f64,
-            bonus in 0.0..0.6f64,
             seed: u64,
         ) {
             let mut complex = box_complex(1);
@@ -263,7 +252,7 @@ mod tests {
             let wish: Vec<f64> =
                 basis.wish.iter().map(|x| x * scale + random.unit() - 0.5).collect();
             let covariance = Dense::energy(&complex).inverse();
-            let whole = Rounding::new(state, wish, covariance).round(bonus).unwrap();
+            let whole = Rounding::new(state, wish, covariance).round().unwrap();
             prop_assert_eq!(whole.complex.check(), Ok(()));
             prop_assert!(whole.complex.start.iter().all(|v| *v == v.round()));
             prop_assert!(whole.periods.iter().all(|x| x.fract() == 0.0));
@@ -277,7 +266,7 @@ mod tests {
         let state = State::new(&complex, basis.start.clone());
         let covariance = Dense::energy(&complex).inverse();
         let whole = Rounding::new(state, basis.wish, covariance)
-            .round(0.0)
+            .round()
             .unwrap();
         for (own, start) in whole.periods.iter().zip(basis.start) {
             assert!((own - start).abs() < 1e-9);

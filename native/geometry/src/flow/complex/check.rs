@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use glam::DVec2;
+use glam::{DVec2, IVec2};
 use thiserror::Error;
 
 use super::{Complex, NO_HALFEDGE, Turn};
@@ -96,9 +96,8 @@ impl Complex {
         if !(miss <= close && (self.turns[h] + self.turns[t]).is_multiple_of(4)) {
             return Err(BrokenComplex::Across(h, miss));
         }
-        let turned = |&c: &glam::IVec2| -c.turned(self.turns[h]);
-        let rows = [h, t].map(|e| self.coefficients.row(e));
-        if !rows[0].iter().map(turned).eq(rows[1].iter().copied()) {
+        let [own, across] = [h, t].map(|e| self.coefficients.row(e));
+        if !own.map(|(j, c)| (j, -c.turned(self.turns[h]))).eq(across) {
             return Err(BrokenComplex::Coefficients(h));
         }
         Ok(())
@@ -115,8 +114,11 @@ impl Complex {
         if area.is_nan() || area <= 0.0 {
             return Err(BrokenComplex::Area(face, area));
         }
-        let [a, b, c] = sides.map(|e| self.coefficients.row(e));
-        if (0..a.len()).any(|i| a[i] + b[i] + c[i] != glam::IVec2::ZERO) {
+        let mut sum = vec![IVec2::ZERO; self.coefficients.n_columns()];
+        for e in sides {
+            self.coefficients.add_to(&mut sum, e, 0);
+        }
+        if sum.iter().any(|&c| c != IVec2::ZERO) {
             return Err(BrokenComplex::Coefficients(h));
         }
         for point in self.located.in_face(face) {

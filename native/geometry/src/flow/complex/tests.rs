@@ -63,7 +63,10 @@ fn dressed(n: u32) -> Complex {
         .map(|w| (w * f64::from(n)).round().as_ivec2())
         .collect();
     for h in complex.halfedge_ids() {
-        rows.row_mut(h)[0] = whole[h.index()];
+        let twin = complex.twins[h];
+        if h < twin {
+            rows.set([h, twin], complex.turns[h], &[whole[h.index()]]);
+        }
     }
     complex.coefficients = rows;
     complex
@@ -124,7 +127,7 @@ proptest! {
         prop_assert_eq!(complex.located.points().len(), n);
         for h in complex.halfedge_ids() {
             prop_assert!(complex.start[h].distance(complex.wish[h]) < 1e-9);
-            let whole = complex.coefficients.row(h)[0].as_dvec2() / 4.0;
+            let whole = complex.coefficients.value(h, &[0.25, 0.0]);
             prop_assert!(complex.start[h].distance(whole) < 1e-9);
         }
     }

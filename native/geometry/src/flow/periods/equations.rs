@@ -158,7 +158,8 @@ mod tests {
     fn a_row_reads_its_part_of_the_sum() {
         let coefficients = [IVec2::new(2, -1), IVec2::new(0, 3)];
         let periods = [1.0, 5.0, -2.0, 4.0];
-        let sum = super::super::evaluate(&coefficients, &periods);
+        let products = coefficients.iter().zip(periods.as_chunks::<2>().0);
+        let sum: DVec2 = products.map(|(c, &x)| c.as_dvec2().rotate(x.into())).sum();
         for part in [Part::Real, Part::Imaginary] {
             assert_eq!(dot(&real_row(&coefficients, part), &periods), part.of(sum));
         }

@@ -13,7 +13,7 @@ use glam::{DVec2, IVec2};
 use thiserror::Error;
 
 use super::complex::{Complex, Rows};
-use crate::mesh::{FaceId, HalfedgeId};
+use crate::mesh::{FaceId, HalfedgeId, Id};
 
 pub use equations::{Equations, Part, common_divisor, dot, is_unit, real_row};
 use gaussian::{norm, product, quotient};
@@ -45,17 +45,18 @@ pub struct Basis {
 /// [`NotASphere`] when the complex is not a connected closed surface of genus 0.
 pub fn choose(complex: &mut Complex) -> Result<Basis, NotASphere> {
     let tree = tree::shortest_tree(complex);
-    let open = tree::peel(complex, &tree)?;
+    let (mut rows, open) = tree::peel(complex, &tree)?;
     let values = |vectors: &dyn Fn(HalfedgeId) -> DVec2| tree.iter().map(|&h| vectors(h)).collect();
     let mut start: Vec<DVec2> = values(&|h| complex.start[h]);
     let mut wish: Vec<DVec2> = values(&|h| complex.wish[h]);
-    let mut equation = sum_of_face(complex, open);
-    let zero = close(complex, &mut equation, &mut [&mut start, &mut wish]);
-    if let Some(zero) = zero {
-        complex.coefficients = without_column(complex, zero);
+    if let Some(zero) = close(&mut rows, open, &mut [&mut start, &mut wish]) {
         start.remove(zero);
         wish.remove(zero);
+        for row in &mut rows {
+            row.remove(zero);
+        }
     }
+    complex.coefficients = sparse(complex, &rows, start.len());
     let flat = |values: Vec<DVec2>| values.iter().flat_map(DVec2::to_array).collect();
     Ok(Basis {
         start: flat(start),
@@ -63,19 +64,15 @@ pub fn choose(complex: &mut Complex) -> Result<Basis, NotASphere> {
     })
 }
 
-/// The coefficients of the sum of a face's three vectors.
-fn sum_of_face(complex: &Complex, face: FaceId) -> Vec<IVec2> {
-    let h = complex.halfedge(face);
-    let [a, b, c] = [h, h.next(), h.prev()].map(|e| complex.coefficients.row(e));
-    (0..a.len()).map(|i| a[i] + b[i] + c[i]).collect()
-}
-
-/// Changes variables until one coefficient of the equation is left; returns its column.
+/// Changes variables until one coefficient of the closing equation, the sum over a face, is left;
+/// returns its column.
 fn close(
-    complex: &mut Complex,
-    equation: &mut [IVec2],
+    rows: &mut [Vec<IVec2>],
+    face: FaceId,
     values: &mut [&mut Vec<DVec2>; 2],
 ) -> Option<usize> {
+    let [a, b, c] = [0, 1, 2].map(|i| &rows[3 * face.index() + i]);
+    let mut equation: Vec<IVec2> = (0..a.len()).map(|j| a[j] + b[j] + c[j]).collect();
     loop {
         // Of the smallest the last, which is the longest edge: the one least bound to be short.
         let columns = (0..equation.len()).filter(|&j| equation[j] != IVec2::ZERO);
@@ -84,8 +81,13 @@ fn close(
         for j in (0..equation.len()).filter(|&j| j != pivot) {
             let q = quotient(equation[j], equation[pivot]);
             if q != IVec2::ZERO {
-                equation[j] -= product(q, equation[pivot]);
-                absorb(complex, pivot, j, q);
+                let part = product(q, equation[pivot]);
+                equation[j] -= part;
+                // The variable of the pivot becomes itself plus q times the other.
+                for row in &mut *rows {
+                    let part = product(row[pivot], q);
+                    row[j] -= part;
+                }
                 for values in values.iter_mut() {
                     let part = q.as_dvec2().rotate(values[j]);
                     values[pivot] += part;
@@ -99,35 +101,15 @@ fn close(
     }
 }
 
-/// Replaces the variable of `pivot` by itself plus q times that of `column`.
-fn absorb(complex: &mut Complex, pivot: usize, column: usize, q: IVec2) {
+fn sparse(complex: &Complex, rows: &[Vec<IVec2>], n_columns: usize) -> Rows {
+    let mut sparse = Rows::new(complex.twins.len(), n_columns);
     for h in complex.halfedge_ids() {
-        let row = complex.coefficients.row_mut(h);
-        row[column] -= product(row[pivot], q);
-    }
-}
-
-fn without_column(complex: &Complex, column: usize) -> Rows {
-    let old = &complex.coefficients;
-    let mut rows = Rows::new(complex.twins.len(), old.n_columns() - 1);
-    for h in complex.halfedge_ids() {
-        let [before, after] = [&old.row(h)[..column], &old.row(h)[column + 1..]];
-        let row = rows.row_mut(h);
-        row[..column].copy_from_slice(before);
-        row[column..].copy_from_slice(after);
-    }
-    rows
-}
-
-/// The vector that a row of coefficients makes of the periods.
-pub fn evaluate(row: &[IVec2], periods: &[f64]) -> DVec2 {
-    let mut sum = DVec2::ZERO;
-    for (c, x) in row.iter().zip(periods.as_chunks::<2>().0) {
-        if *c != IVec2::ZERO {
-            sum += c.as_dvec2().rotate(DVec2::from_array(*x));
+        let twin = complex.twins[h];
+        if h < twin {
+            sparse.set([h, twin], complex.turns[h], &rows[h.index()]);
         }
     }
-    sum
+    sparse
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use glam::IVec2;
 
 use super::NotASphere;
-use crate::flow::complex::{Complex, Rows, Turn};
+use crate::flow::complex::{Complex, Turn};
 use crate::mesh::{FaceId, HalfedgeId, Id, VertexId};
 
 /// The halfedges of a spanning tree of least length, shortest first.
@@ -39,15 +39,18 @@ impl Groups {
     }
 }
 
-/// Gives each halfedge its row over the vectors of the tree; returns the face whose sum stays open.
+/// The row of each halfedge over the vectors of the tree, and the face whose sum stays open.
 ///
 /// The edges off the tree are a tree of the dual graph. A leaf of it is a face with one unknown
 /// edge, which the other two decide. One face is never used: its sum is the closing equation.
-pub(super) fn peel(complex: &mut Complex, tree: &[HalfedgeId]) -> Result<FaceId, NotASphere> {
-    let mut rows = Rows::new(complex.twins.len(), tree.len());
+pub(super) fn peel(
+    complex: &Complex,
+    tree: &[HalfedgeId],
+) -> Result<(Vec<Vec<IVec2>>, FaceId), NotASphere> {
+    let mut rows = vec![vec![IVec2::ZERO; tree.len()]; complex.twins.len()];
     let mut is_known = vec![false; complex.twins.len()];
     for (column, &h) in tree.iter().enumerate() {
-        rows.row_mut(h)[column] = IVec2::X;
+        rows[h.index()][column] = IVec2::X;
         know(complex, &mut rows, &mut is_known, h);
     }
     let mut is_used = vec![false; complex.n_faces()];
@@ -56,18 +59,15 @@ pub(super) fn peel(complex: &mut Complex, tree: &[HalfedgeId]) -> Result<FaceId,
         let Some(h) = only_unknown(complex, face, &is_known) else {
             continue;
         };
-        let sum: Vec<IVec2> = (rows.row(h.next()).iter().zip(rows.row(h.prev())))
-            .map(|(&a, &b)| -a - b)
-            .collect();
-        rows.row_mut(h).copy_from_slice(&sum);
+        let [a, b] = [h.next(), h.prev()].map(|e| &rows[e.index()]);
+        rows[h.index()] = a.iter().zip(b).map(|(&a, &b)| -a - b).collect();
         know(complex, &mut rows, &mut is_known, h);
         is_used[face.index()] = true;
         waiting.push(complex.twins[h].face());
     }
-    complex.coefficients = rows;
     let mut unused = complex.face_ids().filter(|f| !is_used[f.index()]);
     match (unused.next(), unused.next()) {
-        (Some(face), None) => Ok(face),
+        (Some(face), None) => Ok((rows, face)),
         _ => Err(NotASphere),
     }
 }
@@ -81,13 +81,9 @@ fn only_unknown(complex: &Complex, face: FaceId, is_known: &[bool]) -> Option<Ha
 }
 
 /// Carries the row of a halfedge to its twin.
-fn know(complex: &Complex, rows: &mut Rows, is_known: &mut [bool], h: HalfedgeId) {
+fn know(complex: &Complex, rows: &mut [Vec<IVec2>], is_known: &mut [bool], h: HalfedgeId) {
     let twin = complex.twins[h];
-    let turned: Vec<IVec2> = rows
-        .row(h)
-        .iter()
-        .map(|&c| -c.turned(complex.turns[h]))
-        .collect();
-    rows.row_mut(twin).copy_from_slice(&turned);
+    let turned = |c: &IVec2| -c.turned(complex.turns[h]);
+    rows[twin.index()] = rows[h.index()].iter().map(turned).collect();
     [is_known[h.index()], is_known[twin.index()]] = [true; 2];
 }

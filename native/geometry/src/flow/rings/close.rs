@@ -110,25 +110,19 @@ pub(super) fn places(
 ) -> [Vec<IVec2>; 2] {
     let rows = &complex.coefficients;
     let mut left = vec![IVec2::ZERO; rows.n_columns()];
-    let mut right = rows.row(first).to_vec();
+    let mut right = left.clone();
+    rows.add_to(&mut right, first, 0);
     for step in strip(complex, first, entered) {
-        let apex = apex_row(complex, step.entered, step.turns, &right);
-        *(if step.is_left { &mut left } else { &mut right }) = apex;
+        // The third corner takes the place of one of the two.
+        let own = if step.is_left {
+            left.copy_from_slice(&right);
+            &mut left
+        } else {
+            &mut right
+        };
+        rows.add_to(own, step.entered.next(), step.turns);
     }
     [left, right]
-}
-
-/// The place of the third corner of a triangle over the free periods.
-pub(super) fn apex_row(
-    complex: &Complex,
-    entered: HalfedgeId,
-    turns: u8,
-    right: &[IVec2],
-) -> Vec<IVec2> {
-    let side = complex.coefficients.row(entered.next());
-    (right.iter().zip(side))
-        .map(|(&r, s)| r + s.turned(turns))
-        .collect()
 }
 
 impl Cylinder {

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, IVec2};
 
-use super::close::{apex_row, places};
+use super::close::places;
 use super::off_axis;
 use super::sight::{Limits, Sights};
 use crate::flow::complex::Complex;
@@ -42,10 +42,11 @@ pub fn segments(complex: &Complex, longest: f64, off: f64) -> Vec<Segment> {
             return;
         }
         let sight = *sights.last();
-        let [_, right] = places(complex, sights.first().entered, &sights.entered());
+        let [_, mut end] = places(complex, sights.first().entered, &sights.entered());
+        (complex.coefficients).add_to(&mut end, sight.entered.next(), sight.turns);
         found.push(Segment {
             vector: apex,
-            coefficients: apex_row(complex, sight.entered, sight.turns, &right),
+            coefficients: end,
         });
     });
     found

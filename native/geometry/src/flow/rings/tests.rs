@@ -7,7 +7,7 @@ use crate::flow::complex::tests::box_complex;
 use crate::flow::covariance::Dense;
 use crate::flow::drag::State;
 use crate::flow::lines::trace;
-use crate::flow::periods::{choose, dot, evaluate};
+use crate::flow::periods::{choose, dot};
 use crate::flow::rounding::Rounding;
 use crate::random::Random;
 
@@ -35,6 +35,12 @@ fn shaken(seed: u64, range: f64) -> State {
         .collect();
     assert_eq!(state.drag(&moved, 0.1), 1.0);
     state
+}
+
+/// The vector that coefficients make of periods.
+fn evaluate(coefficients: &[IVec2], periods: &[f64]) -> DVec2 {
+    let parts = [Part::Real, Part::Imaginary].map(|part| real_row(coefficients, part));
+    parts.map(|row| dot(&row, periods)).into()
 }
 
 #[test]
@@ -95,7 +101,7 @@ fn imposed_rings_close_after_rounding() {
         };
         assert!(impose(&mut rounding, &pool, 1.0, greed) > 0);
         let rows = rounding.equations.clone();
-        let rounded = rounding.round(0.0).unwrap();
+        let rounded = rounding.round().unwrap();
         let mut solved = rounded.periods.clone();
         rows.solve(&mut solved);
         assert_eq!(solved, rounded.periods);

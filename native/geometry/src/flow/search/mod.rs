@@ -16,7 +16,7 @@ use super::complex::Complex;
 use super::covariance::Dense;
 use super::drag::{SHORT, State};
 use super::grid::{self, Grid, NotReadable};
-use super::periods::{self, NotASphere, Periods, evaluate};
+use super::periods::{self, NotASphere, Periods};
 use crate::progress::{Cancelled, Progress};
 
 pub use score::{Score, Weights};
@@ -111,7 +111,7 @@ pub fn quantise(
     n_trials += settings.n_trials;
     best.state.replay(&mut complex);
     for h in complex.halfedge_ids() {
-        complex.wish[h] = evaluate(complex.coefficients.row(h), &problem.wish);
+        complex.wish[h] = complex.coefficients.value(h, &problem.wish);
     }
     Ok(Quantised {
         grid: grid::read(&complex)?,

@@ -55,6 +55,10 @@ pub struct Score {
     pub n_doubled: usize,
 }
 
+fn relative_error(area: f64, n_wanted: f64) -> f64 {
+    (area / n_wanted - 1.0).abs()
+}
+
 impl Score {
     /// Scores a metric with whole periods, but for doubled edges.
     pub fn of_lines(complex: &Complex, wish: &[f64], n_wanted: f64) -> Self {
@@ -62,12 +66,17 @@ impl Score {
         let strips = trace(complex);
         Self {
             n_quads: area.round() as usize,
-            count_error: (area / n_wanted - 1.0).abs(),
+            count_error: relative_error(area, n_wanted),
             energy: energy(complex, wish),
             spiral: strips.spiral,
             loops: strips.loops,
             n_doubled: 0,
         }
+    }
+
+    /// The count's error that counts, for a metric of some area.
+    pub(super) fn excess_error(area: f64, n_wanted: f64) -> f64 {
+        (relative_error(area, n_wanted) - EXACT).max(0.0)
     }
 
     /// Counts the doubled edges too: what costs most of a trial, and no trial that is worse needs.

@@ -6,12 +6,10 @@ use crate::flow::rings::{Cylinder, Greed, Reach, cylinders, impose};
 use crate::flow::rounding::Rounding;
 use crate::progress::{Cancelled, Progress};
 
-/// How much nearer a period on an axis seems than it is.
-const AXIS_BONUSES: [f64; 3] = [0.0, 0.3, 0.6];
 /// How much energy a whole mesh of loops is worth when rings are chosen.
 const WORTHS: [f64; 3] = [0.0, 1.0, 3.0];
-/// Scales tried for each pair of these; each corrects the count of the one before.
-const N_SCALES: usize = 6;
+/// Scales tried for each of these; each corrects the count of the one before.
+const N_SCALES: usize = 9;
 /// By how much the scales are spread around the one that should give the count.
 const SPREAD: f64 = 0.004;
 /// The scale grows so when a rounding got stuck.
@@ -37,30 +35,22 @@ pub(super) struct Found {
 #[derive(Clone, Copy)]
 struct Attempt {
     scale: f64,
-    axis_bonus: f64,
     worth: f64,
 }
 
 pub(super) fn round_at_scales(problem: &Problem, progress: &Progress) -> Result<Found, Cancelled> {
     let pool = pool(problem);
     let mut found = Found::default();
-    let n = (WORTHS.len() * AXIS_BONUSES.len() * N_SCALES) as f64;
+    let n = (WORTHS.len() * N_SCALES) as f64;
     for worth in WORTHS {
-        for axis_bonus in AXIS_BONUSES {
-            let mut scale = 1.0;
-            for i in 0..N_SCALES {
-                progress.at(found.n_tried as f64 / n)?;
-                let attempt = Attempt {
-                    scale,
-                    axis_bonus,
-                    worth,
-                };
-                let spread = 1.0 + SPREAD * (i as f64 - 2.0);
-                scale *= match found.take(problem, &pool, attempt) {
-                    Some(n_quads) => (problem.n_quads / n_quads).sqrt() * spread,
-                    None => ROOM,
-                };
-            }
+        let mut scale = 1.0;
+        for i in 0..N_SCALES {
+            progress.at(found.n_tried as f64 / n)?;
+            let spread = 1.0 + SPREAD * (i as f64 - 2.0);
+            scale *= match found.take(problem, &pool, Attempt { scale, worth }) {
+                Some(n_quads) => (problem.n_quads / n_quads).sqrt() * spread,
+                None => ROOM,
+            };
         }
     }
     if let Some(best) = &mut found.best {
@@ -119,7 +109,7 @@ impl Found {
                 n_most,
             };
             let n_rings = impose(&mut rounding, pool, attempt.scale, greed);
-            if let Some(state) = rounding.round(attempt.axis_bonus) {
+            if let Some(state) = rounding.round() {
                 let score = problem.score(&state);
                 return Some(Candidate { state, score });
             }
