@@ -3,9 +3,10 @@
 use std::ops::{Add, AddAssign};
 
 use glam::DVec3;
+use rayon::prelude::*;
 
-use super::rounds::BATCH;
-use crate::mesh::{TriangleMesh, VertexMap};
+use super::rounds::{BATCH, TASK};
+use crate::mesh::{TriangleMesh, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
 
 /// Garland & Heckbert's quadric `p·A p + 2 b·p + c`.
@@ -89,10 +90,13 @@ pub(super) fn vertex_quadrics(
     progress: &Progress,
 ) -> Result<VertexMap<Quadric>, Cancelled> {
     let mut quadrics: VertexMap<Quadric> = VertexMap::filled(points.len(), Quadric::default());
+    let mut of_faces = Vec::new();
     for batch in mesh.faces().chunks(BATCH) {
         progress.check()?;
-        for face in batch {
-            let quadric = Quadric::of_triangle(face.map(|v| points[v]));
+        let faces = batch.par_iter().with_min_len(TASK);
+        let quadric = |face: &[VertexId; 3]| Quadric::of_triangle(face.map(|v| points[v]));
+        faces.map(quadric).collect_into_vec(&mut of_faces);
+        for (face, &quadric) in batch.iter().zip(&of_faces) {
             for &v in face {
                 quadrics[v] += quadric;
             }

@@ -1,6 +1,9 @@
 //! Connectivity that can be edited: the ring of neighbours of every vertex.
 
-use super::rounds::BATCH;
+use rayon::prelude::*;
+use smallvec::SmallVec;
+
+use super::rounds::{BATCH, TASK};
 use crate::mesh::{Id, TriangleMesh, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
 
@@ -43,14 +46,16 @@ impl Rings {
                 outside[mesh.origin(h)] = Some(outer);
             }
         }
-        let mut ring = Vec::new();
-        for v in mesh.vertex_ids() {
-            if v.index() % BATCH == 0 {
-                progress.check()?;
+        let vertices: Vec<VertexId> = mesh.vertex_ids().collect();
+        let ring = |&v: &VertexId| mesh.neighbours(v).chain(outside[v]).collect();
+        let mut around: Vec<SmallVec<[VertexId; 12]>> = Vec::new();
+        for batch in vertices.chunks(BATCH) {
+            progress.check()?;
+            let batched = batch.par_iter().with_min_len(TASK);
+            batched.map(ring).collect_into_vec(&mut around);
+            for (&v, ring) in batch.iter().zip(&around) {
+                rings.place(v, ring);
             }
-            ring.clear();
-            ring.extend(mesh.neighbours(v).chain(outside[v]));
-            rings.place(v, &ring);
         }
         Ok(rings)
     }

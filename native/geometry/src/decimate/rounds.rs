@@ -7,7 +7,7 @@ use crate::mesh::{VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
 
 /// Vertices per parallel task.
-const TASK: usize = 256;
+pub(super) const TASK: usize = 256;
 /// Vertices per look at the cancellation flag: some 10 ms of work.
 pub(super) const BATCH: usize = 8192;
 

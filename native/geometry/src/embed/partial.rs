@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
+use smallvec::SmallVec;
 
 use crate::hierarchy::{Collapse, CollapseHierarchy};
 use crate::mesh::{Id, TriangleMesh, VertexId, VertexMap};
@@ -12,13 +13,16 @@ const LEAST_CHUNK: usize = 512;
 /// The colour of vertices that are not there.
 const NOT_THERE: u32 = u32::MAX;
 
+/// The neighbours of a vertex: a cache line where there are no more than usual.
+type Ring = SmallVec<[VertexId; 12]>;
+
 /// Vertices with points on the sphere, and the mesh that they make.
 #[derive(Clone, Debug)]
 pub struct Partial {
     /// The point of every vertex that is there.
     pub sphere: VertexMap<DVec3>,
     /// The neighbours of every vertex that is there, counter-clockwise; nothing for the others.
-    rings: VertexMap<Vec<VertexId>>,
+    rings: VertexMap<Ring>,
     /// No two neighbours have the same colour.
     colours: VertexMap<u32>,
     n_there: usize,
@@ -30,7 +34,7 @@ impl Partial {
         let n = hierarchy.n_vertices();
         let mut partial = Self {
             sphere: VertexMap::filled(n, DVec3::ZERO),
-            rings: VertexMap::filled(n, Vec::new()),
+            rings: VertexMap::filled(n, Ring::new()),
             colours: VertexMap::filled(n, NOT_THERE),
             n_there: 4,
         };
@@ -45,7 +49,7 @@ impl Partial {
         for (colour, (&v, corner)) in vertices.iter().zip(corners).enumerate() {
             partial.sphere[v] = corner / 3.0_f64.sqrt();
             partial.colours[v] = colour as u32;
-            partial.rings[v] = ring_in(&hierarchy.base(), v);
+            partial.rings[v] = ring_in(&hierarchy.base(), v).into();
         }
         partial
     }
@@ -63,7 +67,7 @@ impl Partial {
         // A ring that stays empty after a cancellation is never seen.
         let ring = |i| match progress.check() {
             Ok(()) => mesh.neighbours(VertexId::from_index(i)).collect(),
-            Err(Cancelled) => Vec::new(),
+            Err(Cancelled) => Ring::new(),
         };
         let rings = (0..n)
             .into_par_iter()
@@ -101,7 +105,7 @@ impl Partial {
 
     /// The ring of a vertex, starting at one of its neighbours.
     pub fn ring_from(&self, vertex: VertexId, first: VertexId) -> Vec<VertexId> {
-        let mut ring = self.rings[vertex].clone();
+        let mut ring = self.rings[vertex].to_vec();
         ring.rotate_left(self.place(vertex, first));
         ring
     }
@@ -130,7 +134,8 @@ impl Partial {
         let fan = &mut self.rings[old];
         // Only the first and the last of the ring stay neighbours of the old vertex.
         fan.rotate_left(at);
-        fan.splice(1..last - 1, [vertex]);
+        fan.drain(1..last - 1);
+        fan.insert(1, vertex);
         for &middle in &ring[first + 1..last] {
             let at = self.place(middle, old);
             self.rings[middle][at] = vertex;
@@ -140,7 +145,7 @@ impl Partial {
         let at = self.place(ring[last], old);
         self.rings[ring[last]].insert(at + 1, vertex);
         self.colours[vertex] = self.free_colour(ring);
-        self.rings[vertex] = ring.to_vec();
+        self.rings[vertex] = Ring::from_slice(ring);
         self.sphere[vertex] = position;
         self.n_there += 1;
     }
@@ -150,7 +155,8 @@ impl Partial {
         let last = ring.len() - 1;
         let old = ring[0];
         let at = self.place(old, vertex);
-        self.rings[old].splice(at..=at, ring[2..last].iter().copied());
+        self.rings[old].remove(at);
+        self.rings[old].insert_from_slice(at, &ring[2..last]);
         for &middle in &ring[2..last] {
             let at = self.place(middle, vertex);
             self.rings[middle][at] = old;
