@@ -56,6 +56,8 @@ PARTS: dict[str, Callable[[Bench], list[Row]]] = {
     "threads": embedding.threads,
     "triangles": remeshing.triangles,
     "quads": remeshing.quads,
+    "flow": remeshing.flow,
+    "flow_many": remeshing.flow_many,
     "large": remeshing.large,
     "identity": remeshing.identity,
     "sizes": sizes,

@@ -1,4 +1,4 @@
-"""Measures whole runs: triangles, quads, a large input, the peers beside them, the same bytes."""
+"""Measures whole runs: each primitive, a large input, the peers beside them, the same bytes."""
 
 from pathlib import Path
 
@@ -10,6 +10,7 @@ from runs import Run
 
 N_TRIANGLES = 6000
 N_QUADS = 2000
+N_MANY_QUADS = 8000
 LARGE_TRIANGLES = 1_000_000
 LARGE_FACES = 5000
 PEER_RANGE = (20_000, 40_000)
@@ -28,6 +29,7 @@ FIGURES = (
     "edge_cv",
     "triangle_angle_mean_min",
     "jacobian_min",
+    "jacobian_p01",
     "jacobian_mean",
     "irregular_pct",
     "alignment_deg",
@@ -35,13 +37,14 @@ FIGURES = (
     "spiral_pct",
     "feature_f1_pct",
 )
+PEER_FIGURES = ("chamfer_pct", "faces", "same_topology")
 
 
 def triangles(bench: Bench) -> list[Row]:
-    """`--kind triangles --faces 6000` on every mesh, isotropic remeshing beside it."""
+    """6,000 adaptive triangles on every mesh, isotropic remeshing beside it."""
     rows = []
     for mesh in single_balls(bench.dev):
-        row = _remeshed(bench, mesh, "triangles", N_TRIANGLES, N_TRIANGLES // 2)
+        row = _remeshed(bench, mesh, "adaptive", N_TRIANGLES)
         peer = bench.peer(mesh.path, "isotropic", N_TRIANGLES // 2)
         if peer["status"] == "ok" and row["ok"]:
             found = bench.figures(mesh.path, peer["output"], N_TRIANGLES // 2)
@@ -55,19 +58,31 @@ def triangles(bench: Bench) -> list[Row]:
 
 
 def quads(bench: Bench) -> list[Row]:
-    """`--kind quads --faces 2000` on every mesh, Instant Meshes and QuadriFlow in turn with it."""
+    """2,000 quads of the quad sphere on every mesh, the peers in turn with it."""
+    return _beside_peers(bench, "quad-sphere", N_QUADS)
+
+
+def flow(bench: Bench) -> list[Row]:
+    """2,000 quads that flow on every mesh, the peers in turn with it."""
+    return _beside_peers(bench, "flow", N_QUADS)
+
+
+def flow_many(bench: Bench) -> list[Row]:
+    """8,000 quads that flow on every mesh, the peers in turn with it."""
+    return _beside_peers(bench, "flow", N_MANY_QUADS)
+
+
+def _beside_peers(bench: Bench, primitive: str, n_quads: int) -> list[Row]:
     rows = []
     for mesh in single_balls(bench.dev):
-        row = _remeshed(bench, mesh, "quads", N_QUADS, N_QUADS)
+        row = _remeshed(bench, mesh, primitive, n_quads)
         for peer in ("instant_meshes", *(("quadriflow",) if bench.blender else ())):
-            found = bench.peer(mesh.path, peer, N_QUADS)
+            found = bench.peer(mesh.path, peer, n_quads)
             row[f"{peer}_s"] = found.get("cpu_s")
             row["input_triangles"] = found["input_triangles"]
             if found["status"] == "ok":
-                figures = bench.figures(mesh.path, found["output"], N_QUADS)
-                row[f"{peer}_chamfer_pct"] = figures["chamfer_pct"]
-                row[f"{peer}_faces"] = figures["faces"]
-                row[f"{peer}_same_topology"] = figures["same_topology"]
+                figures = bench.figures(mesh.path, found["output"], n_quads)
+                row |= {f"{peer}_{name}": figures[name] for name in PEER_FIGURES}
         rows.append(row)
         _say(
             row, "faces", "chamfer_pct", "f1_at_1_pct", "run_s", "instant_meshes_s", "quadriflow_s"
@@ -81,14 +96,15 @@ def in_peer_range(rows: list[Row]) -> list[Row]:
     return [row for row in rows if low <= row.get("input_triangles", 0) <= high]
 
 
-def _remeshed(bench: Bench, mesh: Listed, kind: str, n_faces: int, n_quads: int) -> Row:
-    output = bench.out / kind / f"{mesh.name}.obj"
+def _remeshed(bench: Bench, mesh: Listed, primitive: str, n_faces: int) -> Row:
+    output = bench.out / f"{primitive}_{n_faces}" / f"{mesh.name}.obj"
     output.parent.mkdir(parents=True, exist_ok=True)
-    arguments = ("--faces", n_faces, "--kind", kind, "--threads", 1)
+    arguments = ("--faces", n_faces, "--primitive", primitive, "--threads", 1)
     done, report = bench.program("remesh", mesh.path, output, *arguments)
     command = f"orbflow remesh {mesh.path} out.obj {' '.join(map(str, arguments))}"
     if not done.ok:
         return failure(mesh.name, done, command)
+    n_quads = n_faces // 2 if primitive == "adaptive" else n_faces
     found = bench.figures(mesh.path, output, n_quads)
     return {
         "mesh": mesh.name,
@@ -97,8 +113,16 @@ def _remeshed(bench: Bench, mesh: Listed, kind: str, n_faces: int, n_quads: int)
         "n_asked": n_faces,
         **_cost(done, report),
         **{name: found.get(name) for name in FIGURES},
+        "count_error_pct": 100 * abs(found["faces"] / n_faces - 1),
         "n_folds": report["embedding"]["n_folds"],
+        "is_used": all(
+            (part.get("flow") or {}).get("status") == "used" for part in report["parts"]
+        ),
     }
+
+
+def _flows(part: Row) -> bool:
+    return (part.get("flow") or {}).get("status") == "used"
 
 
 def _cost(done: Run, report: Row) -> Row:

@@ -35,6 +35,23 @@ QUADS = (
     ("loop_edges_pct", "loop edges %", ".0f"),
     ("spiral_pct", "spiral %", ".0f"),
 )
+FLOW = (
+    ("faces", "quads", "d"),
+    ("chamfer_pct", "mean distance %", ".3f"),
+    ("hausdorff_pct", "Hausdorff %", ".2f"),
+    ("edge_cv", "edge CV", ".3f"),
+    ("jacobian_min", "Jacobian min", ".2f"),
+    ("jacobian_p01", "1 %", ".2f"),
+    ("jacobian_mean", "mean", ".3f"),
+    ("self_intersecting_pct", "crossing %", ".2f"),
+    ("irregular_pct", "irregular %", ".1f"),
+    ("alignment_deg", "alignment °", ".1f"),
+    ("loop_edges_pct", "loop edges %", ".0f"),
+    ("spiral_pct", "spiral %", ".0f"),
+    ("feature_f1_pct", "feature F1 %", ".0f"),
+    ("run_s", "CPU s", ".2f"),
+    ("quadriflow_s", "QuadriFlow's", ".2f"),
+)
 WHOLE = (
     ("input_triangles", "input triangles", "d"),
     ("run_s", "Orbflow, CPU s", ".2f"),
@@ -124,6 +141,10 @@ def tables(results: Results) -> dict[str, str]:
         made["quads"] = table(rows, QUADS)
         made["whole"] = table(rows, WHOLE)
         made["steps"] = steps_table(rows)
+    for name in ("flow", "flow_many"):
+        if rows := results.get(name):
+            made[name] = table(rows, FLOW)
+            made[f"{name}_steps"] = steps_table(rows)
     if rows := results.get("large"):
         made["large"] = table(rows, LARGE, with_median=False)
     return made
