@@ -86,7 +86,17 @@ def sentence(reports: list[dict[str, Any]]) -> str:
         sum(report[side]["n_faces"] for report in reports) for side in ("input", "output")
     )
     objects = f"{len(reports)} objects: " if len(reports) > 1 else ""
-    return f"{objects}{before:,} faces became {after:,}"
+    return f"{objects}{before:,} faces became {after:,}{_without_flow(reports)}"
+
+
+def _without_flow(reports: list[dict[str, Any]]) -> str:
+    """Which parts got the quad sphere because their quads could not flow, and why the first."""
+    parts = [part for report in reports for part in report["parts"]]
+    refused = [part for part in parts if (part["flow"] or {}).get("status") == "refused"]
+    if not refused:
+        return ""
+    of = f" in {len(refused)} of {len(parts)} parts" if len(parts) > 1 else ""
+    return f"; quad sphere instead of flow{of}: {refused[0]['flow']['reason']}"
 
 
 def rows(report: dict[str, Any]) -> list[tuple[str, str]]:

@@ -15,7 +15,7 @@ _KINDS = (
     ("TRIANGLES", "Triangles", "Faces with three corners"),
 )
 _PRIMITIVES = (
-    ("AUTO", "Automatic", "Quad sphere for quads, adaptive for triangles"),
+    ("AUTO", "Automatic", "Flow for quads, adaptive for triangles"),
     ("FLOW", "Flow", "Quads whose edges follow the shape"),
     ("QUAD_SPHERE", "Quad Sphere", "A subdivided box: even rows of quads, 8 irregular vertices"),
     ("ADAPTIVE", "Adaptive", "Triangles placed where the surface needs them"),

@@ -53,7 +53,7 @@ pub struct Remesh {
     /// The polygons to make [default: quads, or what the primitive has]
     #[arg(long, value_parser = kind())]
     pub kind: Option<Kind>,
-    /// The sphere to deform [default: adaptive for triangles, quad-sphere for quads]
+    /// The sphere to deform [default: adaptive for triangles, flow for quads]
     #[arg(long, value_parser = primitive())]
     pub primitive: Option<Primitive>,
     #[command(flatten)]

@@ -80,6 +80,7 @@ fn moved(mesh: &TriangleMesh, scale: f64, shift: DVec3) -> TriangleMesh {
 fn any_settings() -> impl Strategy<Value = Settings> {
     let primitive = prop_oneof![
         Just(Primitive::Adaptive),
+        Just(Primitive::Flow),
         Just(Primitive::QuadSphere),
         Just(Primitive::Icosphere)
     ];

@@ -242,7 +242,7 @@ pub fn deform_flow(
     flowing.check(map)?;
     let mut report = Report::default();
     let mut sheet = Sheet::new(map, vertex_normals(map.mesh()), flowing.quads);
-    let part = progress.part("", 0.0, 0.6);
+    let part = progress.part("", 0.05, 0.6);
     follow::lead(
         &mut sheet,
         flowing.wanted,

@@ -82,7 +82,7 @@ pub struct Settings {
     pub faces: usize,
     /// Triangles or quads.
     pub kind: Kind,
-    /// The sphere that is deformed; none chooses adaptive triangles or the quad sphere.
+    /// The sphere that is deformed; none chooses adaptive triangles or flow.
     pub primitive: Option<Primitive>,
     /// Where the adaptive primitive's samples start; equal seeds give equal bytes.
     pub seed: u64,
@@ -111,7 +111,7 @@ impl Settings {
     pub fn primitive(&self) -> Primitive {
         self.primitive.unwrap_or(match self.kind {
             Kind::Triangles => Primitive::Adaptive,
-            Kind::Quads => Primitive::QuadSphere,
+            Kind::Quads => Primitive::Flow,
         })
     }
 
