@@ -7,6 +7,7 @@
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
+use std::f64::consts::PI;
 
 use crate::flow::field::OrientationField;
 use crate::mesh::{HalfedgeId, TriangleMesh, VertexId, VertexMap};
@@ -17,17 +18,24 @@ const MERGE_RADIUS: f64 = 1.2;
 /// Two negative ones must be closer: merging them makes a vertex of valence 6.
 const MERGE_RADIUS_NEGATIVE: f64 = 0.5;
 
+/// How far apart the units of a split singularity are put.
+const SPLIT_DISTANCE: f64 = 1.1;
+
 /// Merges and splits singularities for quads of edge length `h`.
 ///
 /// Opposite ones closer than 1.2 h are merged, nearest first, pairs that cancel before others;
-/// negative ones closer than 0.5 h where the sum is at least −2; of those with index 2 or more all
-/// units but one are moved about 1.2 h away, to regular vertices, where the mesh has any.
+/// negative ones closer than 0.5 h where the sum is at least −2. Those with index 2 or more, or −3
+/// or less, are split into units about an edge of a quad apart, at regular vertices around, as far
+/// as the mesh has any. At the end of a limb these are the four corners of a quad around the tip.
 /// Directions are kept, so along the paths they no longer agree with the turns: see
 /// [`settle`](super::field::settle). Turns, residuals and indices change. O(s · n) for s
 /// singularities.
 pub fn tidy(mesh: &TriangleMesh, field: &mut OrientationField, h: f64) {
-    merge(mesh, field, h);
-    split(mesh, field, h);
+    // What was split may have come close to others.
+    for _ in 0..2 {
+        merge(mesh, field, h);
+        split(mesh, field, h);
+    }
     debug_assert_eq!(field.check(mesh), Ok(()));
 }
 
@@ -86,24 +94,52 @@ fn close_pairs(mesh: &TriangleMesh, field: &OrientationField, radius: f64) -> Ve
     pairs
 }
 
-/// Moves units of indices of 2 and more away until every index is 1 or less.
+/// Moves the units of indices of 2 and more, or −3 and less, to places spread around.
 fn split(mesh: &TriangleMesh, field: &mut OrientationField, h: f64) {
     let mut reach = Reach::new(mesh);
     for v in mesh.vertex_ids() {
-        while field.indices[v] >= 2 {
-            reach.spread(v, 2.0 * MERGE_RADIUS * h);
-            let misfit = |u: VertexId| (reach.distances[u] - MERGE_RADIUS * h).abs();
-            let free = reach
-                .seen
-                .iter()
-                .copied()
-                .filter(|&u| field.indices[u] == 0);
-            let Some(u) = free.min_by(|&a, &b| misfit(a).total_cmp(&misfit(b))) else {
-                break;
-            };
-            shift(field, mesh, &reach.path(u), 1);
+        let index = field.indices[v];
+        if (-2..=1).contains(&index) {
+            continue;
+        }
+        reach.spread(v, 2.0 * MERGE_RADIUS * h);
+        for place in places(&reach, field, (index.unsigned_abs() as usize, h)) {
+            shift(field, mesh, &reach.path(place), index.signum());
         }
     }
+}
+
+/// Up to `n` regular vertices on a circle, far from each other, for which `n` singularities are
+/// about an edge of a quad apart.
+fn places(reach: &Reach, field: &OrientationField, (n, h): (usize, f64)) -> Vec<VertexId> {
+    let radius = SPLIT_DISTANCE * h / (2.0 * (PI / n as f64).sin());
+    let is_free = |u: &VertexId| field.indices[*u] == 0;
+    let free: Vec<VertexId> = reach.seen.iter().copied().filter(is_free).collect();
+    let mut places: Vec<VertexId> = Vec::new();
+    let mut rooms = vec![0.0; free.len()];
+    for (room, &u) in rooms.iter_mut().zip(&free) {
+        *room = -(reach.distances[u] - radius).abs();
+    }
+    let misfits = rooms.clone();
+    while places.len() < n.min(free.len()) {
+        let best = (0..free.len()).max_by(|&a, &b| rooms[a].total_cmp(&rooms[b]));
+        let place = free[best.expect("there are more free vertices than places")];
+        for (i, &u) in free.iter().enumerate() {
+            let gap = reach.mesh.position(u).distance(reach.mesh.position(place));
+            let room = if u == place {
+                f64::NEG_INFINITY
+            } else {
+                gap + misfits[i]
+            };
+            rooms[i] = if places.is_empty() {
+                room
+            } else {
+                rooms[i].min(room)
+            };
+        }
+        places.push(place);
+    }
+    places
 }
 
 /// Moves `quarters` of index from the start of a path to its end.
@@ -218,6 +254,34 @@ mod tests {
         let field = tidied(&shapes::sphere(20), 200.0);
         let singular: Vec<i32> = field.indices.iter().copied().filter(|k| *k != 0).collect();
         assert_eq!(singular, [1; 8]);
+    }
+
+    #[test]
+    fn four_units_at_one_vertex_become_the_corners_of_a_quad() {
+        let mesh = shapes::sphere(20);
+        let mut field = orient(&mesh, &Settings::default(), &Progress::none()).unwrap();
+        let mut reach = Reach::new(&mesh);
+        let regular = |v: &VertexId| field.indices[*v] == 0;
+        let tip = mesh.vertex_ids().find(regular).unwrap();
+        reach.spread(tip, f64::INFINITY);
+        let singular: Vec<VertexId> = reach.seen.iter().copied().filter(|v| !regular(v)).collect();
+        for v in &singular[..4] {
+            let back = reach.path(*v);
+            shift(&mut field, &mesh, &back, -1);
+        }
+        assert_eq!(field.indices[tip], 4);
+        split(&mesh, &mut field, 0.3);
+        assert_eq!(field.check(&mesh), Ok(()));
+        let at = mesh.position(tip);
+        let near = |v: &VertexId| field.indices[*v] == 1 && mesh.position(*v).distance(at) < 0.4;
+        let corners: Vec<VertexId> = mesh.vertex_ids().filter(near).collect();
+        assert_eq!(corners.len(), 4);
+        let center = corners
+            .iter()
+            .map(|v| mesh.position(*v))
+            .sum::<glam::DVec3>()
+            / 4.0;
+        assert!(center.distance(at) < 0.08, "{}", center.distance(at));
     }
 
     #[test]
