@@ -13,9 +13,8 @@ use orbflow_geometry::flow::place::place;
 use orbflow_geometry::flow::rounding::Rounding;
 use orbflow_geometry::flow::search::{Quantised, quantise};
 use orbflow_geometry::flow::singularities::tidy;
-use orbflow_geometry::flow::{Settings, cones, conformal, grid, periods, wish};
-use orbflow_geometry::measure::total_area;
-use orbflow_geometry::mesh::{HalfedgeMap, TriangleMesh, VertexMap};
+use orbflow_geometry::flow::{Settings, cones, conformal, grid, periods, sizes, wish};
+use orbflow_geometry::mesh::{FaceMap, HalfedgeMap, TriangleMesh, VertexMap};
 use orbflow_geometry::progress::Progress;
 use orbflow_geometry::sphere_map::SphereMap;
 use orbflow_geometry::{decimate, embed};
@@ -32,21 +31,22 @@ fn body() -> TriangleMesh {
     shapes::limbs(1, 26)
 }
 
-fn edge_length(mesh: &TriangleMesh, n_quads: usize) -> f64 {
-    (total_area(mesh) / n_quads as f64).sqrt()
+fn sizes(mesh: &TriangleMesh, n_quads: usize) -> FaceMap<f64> {
+    let settings = Settings::new(n_quads).sizes;
+    sizes::sizes(mesh, n_quads, &settings, &Progress::none()).expect("a body has sizes")
 }
 
 fn dressed(mesh: &TriangleMesh, n_quads: usize) -> OrientationField {
     let (settings, quiet) = (Settings::new(n_quads), Progress::none());
     let mut field = field::orient(mesh, &settings.field, &quiet).expect("a sphere has a field");
-    tidy(mesh, &mut field, edge_length(mesh, n_quads));
+    tidy(mesh, &mut field, &sizes(mesh, n_quads));
     field::settle(mesh, &mut field, &settings.field, &quiet).expect("not cancelled");
     field
 }
 
 fn wished(mesh: &TriangleMesh, field: &OrientationField, n_quads: usize) -> HalfedgeMap<DVec2> {
-    let h = edge_length(mesh, n_quads);
-    wish::wish(mesh, field, h, &Progress::none()).expect("a field has a wish")
+    let sizes = sizes(mesh, n_quads);
+    wish::wish(mesh, field, &sizes, &Progress::none()).expect("a field has a wish")
 }
 
 fn reduced(mesh: &TriangleMesh, n_quads: usize) -> Complex {

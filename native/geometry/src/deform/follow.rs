@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
+use super::Flowing;
 use super::cover::Cover;
 use super::sheet::{Point, Sheet};
 use crate::mesh::{FaceMap, VertexId, VertexMap};
@@ -75,7 +76,7 @@ impl Stars {
 /// that fold the sphere or spoil a face are halved once, then refused. Returns how many were.
 pub(super) fn follow(
     sheet: &mut Sheet,
-    (crosses, cover): (&FaceMap<DVec3>, &mut Cover),
+    (flowing, cover): (Flowing<'_>, &mut Cover),
     n_rounds: usize,
     progress: &Progress,
 ) -> Result<usize, Cancelled> {
@@ -84,7 +85,7 @@ pub(super) fn follow(
     let mut ways = VertexMap::filled(sheet.n_vertices(), DVec3::ZERO);
     for round in 0..n_rounds {
         progress.at(round as f64 / n_rounds as f64)?;
-        let length = sheet.mean_edge();
+        let unit = unit(sheet, flowing.sizes, &stars);
         if round % ROUNDS_PER_COVER == 0 {
             cover.update(sheet);
         }
@@ -100,12 +101,12 @@ pub(super) fn follow(
             if round < N_LOOSE && loosen(sheet, v, star) {
                 continue;
             }
-            let step = wish(sheet, crosses, (v, star), length);
+            let step = wish(sheet, flowing, (v, star), unit);
             let step = DAMPING * climb(sheet, cover, v, step) + MOMENTUM * ways[v];
             let before = sheet.position(v);
             let moved = slide(sheet, v, step, GUARDED_QUALITY)
                 || slide(sheet, v, step * 0.5, GUARDED_QUALITY)
-                || mend(sheet, v, length);
+                || mend(sheet, v, unit * flowing.sizes[sheet.point(v).place.face]);
             ways[v] = sheet.position(v) - before;
             n_refused += usize::from(!moved);
         }
@@ -188,12 +189,25 @@ fn along(step: DVec3, at: &Point) -> DVec3 {
     step - at.normal * step.dot(at.normal)
 }
 
+/// What a wanted size must be multiplied by for the mean edge to be as long as it is.
+fn unit(sheet: &Sheet, sizes: &FaceMap<f64>, stars: &Stars) -> f64 {
+    let [mut lengths, mut wanted] = [0.0; 2];
+    for v in sheet.vertex_ids() {
+        let here = sheet.point(v);
+        for &other in stars.of(v) {
+            lengths += here.position.distance(sheet.position(other));
+            wanted += sizes[here.place.face];
+        }
+    }
+    lengths / wanted
+}
+
 /// The way along the surface to the mean of what the edges of a vertex want.
 fn wish(
     sheet: &Sheet,
-    crosses: &FaceMap<DVec3>,
+    Flowing { crosses, sizes, .. }: Flowing<'_>,
     (vertex, star): (VertexId, &[VertexId]),
-    length: f64,
+    unit: f64,
 ) -> DVec3 {
     let here = sheet.point(vertex);
     let sum: DVec3 = star
@@ -201,6 +215,8 @@ fn wish(
         .map(|&other| {
             let there = sheet.point(other);
             let edge = here.position - there.position;
+            let wanted = [here, there].map(|end| unit * sizes[end.place.face]);
+            let length = f64::midpoint(wanted[0], wanted[1]);
             let size = OWN_LENGTH * edge.length() + (1.0 - OWN_LENGTH) * length;
             let arms =
                 [here, there].map(|end| nearest_arm(crosses[end.place.face], end.normal, edge));

@@ -119,13 +119,13 @@ pub enum Error {
         /// How many corners it has.
         n_corners: usize,
     },
-    /// Not one wanted position per vertex, or not one cross per face of the map.
-    #[error("{counts:?} wanted positions and crosses; {needed:?} are needed")]
+    /// Not one wanted position per vertex, or not one cross and size per face of the map.
+    #[error("{counts:?} wanted positions, crosses and sizes; {needed:?} are needed")]
     Counts {
         /// What was given.
-        counts: [usize; 2],
+        counts: [usize; 3],
         /// How many vertices the quads have, and how many faces the map.
-        needed: [usize; 2],
+        needed: [usize; 3],
     },
     /// The user asked to stop.
     #[error(transparent)]
@@ -221,6 +221,8 @@ pub struct Flowing<'a> {
     pub wanted: &'a [DVec3],
     /// One arm of the cross of every face of the map's mesh, a unit vector along the face.
     pub crosses: &'a FaceMap<DVec3>,
+    /// How long edges are wanted at every face of the map's mesh, up to a common factor.
+    pub sizes: &'a FaceMap<f64>,
 }
 
 /// Deforms quads that flow into the target's surface, so that their edges keep to the crosses.
@@ -252,7 +254,7 @@ pub fn deform_flow(
     let mut cover = Cover::new(map, &sheet);
     report.n_stuck = follow::follow(
         &mut sheet,
-        (flowing.crosses, &mut cover),
+        (flowing, &mut cover),
         settings.n_flow_relaxations,
         &part,
     )?;
@@ -265,8 +267,9 @@ pub fn deform_flow(
 impl Flowing<'_> {
     /// Whether there is a position for every vertex and a cross for every face.
     fn check(&self, map: &SphereMap) -> Result<(), Error> {
-        let counts = [self.wanted.len(), self.crosses.len()];
-        let needed = [self.quads.n_vertices(), map.mesh().n_faces()];
+        let n_faces = map.mesh().n_faces();
+        let counts = [self.wanted.len(), self.crosses.len(), self.sizes.len()];
+        let needed = [self.quads.n_vertices(), n_faces, n_faces];
         if counts == needed {
             return Ok(());
         }

@@ -165,6 +165,7 @@ fn flowed(mesh: &TriangleMesh, noise: f64, n_flow_relaxations: usize) -> Deforme
     let map = radial_map(mesh);
     let quads = quad_sphere([7, 7, 7]);
     let crosses = crosses(mesh);
+    let sizes = FaceMap::filled(crosses.len(), 1.0);
     let wanted: Vec<_> = quads
         .positions()
         .iter()
@@ -174,6 +175,7 @@ fn flowed(mesh: &TriangleMesh, noise: f64, n_flow_relaxations: usize) -> Deforme
         quads: &quads,
         wanted: &wanted,
         crosses: &crosses,
+        sizes: &sizes,
     };
     let settings = Settings {
         n_flow_relaxations,
@@ -230,10 +232,12 @@ fn what_flows_needs_a_cross_for_every_face() {
     let map = radial_map(&mesh);
     let quads = quad_sphere([3, 3, 3]);
     let crosses = FaceMap::filled(5, DVec3::X);
+    let sizes = FaceMap::filled(5, 1.0);
     let flowing = Flowing {
         quads: &quads,
         wanted: quads.positions(),
         crosses: &crosses,
+        sizes: &sizes,
     };
     let target = target(mesh);
     let result = deform_flow(
@@ -245,7 +249,13 @@ fn what_flows_needs_a_cross_for_every_face() {
     );
     let error = result.unwrap_err();
     assert!(
-        matches!(error, Error::Counts { counts: [_, 5], .. }),
+        matches!(
+            error,
+            Error::Counts {
+                counts: [_, 5, 5],
+                ..
+            }
+        ),
         "{error}"
     );
 }

@@ -294,14 +294,16 @@ mod tests {
     use super::*;
     use crate::flow::cones::keep_cones;
     use crate::flow::{field, singularities, wish};
+    use crate::mesh::FaceMap;
     use crate::shapes;
 
     fn flat(mesh: &TriangleMesh, n_quads: f64) -> Complex {
         let quiet = Progress::none();
         let side = (crate::measure::total_area(mesh) / n_quads).sqrt();
+        let sizes = FaceMap::filled(mesh.n_faces(), side);
         let mut field = field::orient(mesh, &field::Settings::default(), &quiet).unwrap();
-        singularities::tidy(mesh, &mut field, side);
-        let wish = wish::wish(mesh, &field, side, &quiet).unwrap();
+        singularities::tidy(mesh, &mut field, &sizes);
+        let wish = wish::wish(mesh, &field, &sizes, &quiet).unwrap();
         flatten(mesh, &field, wish, &quiet).unwrap()
     }
 

@@ -132,6 +132,7 @@ mod tests {
     use crate::flow::field::{Settings, orient};
     use crate::flow::wish::wish;
     use crate::measure::{dihedral_angle, total_area};
+    use crate::mesh::FaceMap;
     use crate::progress::Progress;
     use crate::shapes;
 
@@ -144,7 +145,8 @@ mod tests {
         let mesh = shapes::cuboid(10);
         let field = orient(&mesh, &Settings::default(), &Progress::none()).unwrap();
         let h = (total_area(&mesh) / 400.0).sqrt();
-        let vectors = wish(&mesh, &field, h, &Progress::none()).unwrap();
+        let sizes = FaceMap::filled(mesh.n_faces(), h);
+        let vectors = wish(&mesh, &field, &sizes, &Progress::none()).unwrap();
         let creases = creases(&mesh, &field, sharp(&mesh));
         assert_eq!(creases.len(), 12);
         for crease in creases {
@@ -186,7 +188,8 @@ mod tests {
     fn the_span_of_a_way_and_back_is_nothing() {
         let mesh = shapes::blob(2, 8);
         let field = orient(&mesh, &Settings::default(), &Progress::none()).unwrap();
-        let vectors = wish(&mesh, &field, 0.2, &Progress::none()).unwrap();
+        let sizes = FaceMap::filled(mesh.n_faces(), 0.2);
+        let vectors = wish(&mesh, &field, &sizes, &Progress::none()).unwrap();
         let regular = |h: &HalfedgeId| field.indices[mesh.target(*h)] == 0;
         for h in mesh.halfedge_ids().filter(regular).take(50) {
             let line = vec![h, mesh.twin(h).unwrap()];

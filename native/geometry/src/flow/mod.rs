@@ -24,6 +24,7 @@ pub mod rings;
 pub mod rounding;
 pub mod search;
 pub mod singularities;
+pub mod sizes;
 mod stars;
 pub mod strips;
 pub mod wish;

@@ -11,8 +11,8 @@ use super::grid::Grid;
 use super::place::{PlaceError, Placed, place};
 use super::search::{self, QuantiseError, Quantised, Score, quantise};
 use super::singularities::tidy;
+use super::sizes::{self, SizesError};
 use super::wish::{WishError, wish};
-use crate::measure::total_area;
 use crate::mesh::{FaceMap, HalfedgeMap, PolygonMesh, PolygonMeshError, TriangleMesh, VertexMap};
 use crate::progress::{Cancelled, Progress};
 use crate::sphere_map::SphereMap;
@@ -24,6 +24,8 @@ pub struct Settings {
     pub n_quads: usize,
     /// How the field follows the shape.
     pub field: field::Settings,
+    /// How long edges are wanted where.
+    pub sizes: sizes::Settings,
     /// How long whole periods are searched, and what makes them good.
     pub search: search::Settings,
 }
@@ -34,6 +36,7 @@ impl Settings {
         Self {
             n_quads,
             field: field::Settings::default(),
+            sizes: sizes::Settings::default(),
             search: search::Settings::default(),
         }
     }
@@ -48,6 +51,8 @@ pub struct Flow {
     pub sphere: Vec<DVec3>,
     /// One arm of the cross of every face of the surface, which the quads' edges follow.
     pub crosses: FaceMap<DVec3>,
+    /// How long edges are wanted at every face of the surface.
+    pub sizes: FaceMap<f64>,
     /// How they were found.
     pub report: Report,
 }
@@ -73,6 +78,9 @@ pub enum Error {
     /// The user asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// There are no sizes.
+    #[error("no sizes: {0}")]
+    Sizes(SizesError),
     /// There is no orientation field.
     #[error("no orientation field: {0}")]
     Field(FieldError),
@@ -122,6 +130,7 @@ macro_rules! lift {
 }
 
 lift!(
+    SizesError => Sizes,
     FieldError => Field,
     WishError => Wish,
     FlattenError => Flatten,
@@ -144,8 +153,13 @@ fn is_near(n_quads: usize, n_wanted: usize) -> bool {
 /// [`enum@Error`].
 pub fn flow(map: &SphereMap, settings: &Settings, progress: &Progress) -> Result<Flow, Error> {
     let mesh = map.mesh();
-    let h = (total_area(mesh) / settings.n_quads.max(1) as f64).sqrt();
-    let (field, wish) = dress(mesh, settings, h, &progress.part("", 0.0, 0.2))?;
+    let sizes = sizes::sizes(
+        mesh,
+        settings.n_quads,
+        &settings.sizes,
+        &progress.part("", 0.0, 0.05),
+    )?;
+    let (field, wish) = dress(mesh, settings, &sizes, &progress.part("", 0.05, 0.2))?;
     let complex = flatten(mesh, &field, wish, &progress.part("", 0.2, 0.35))?;
     let none = VertexMap::filled(mesh.n_vertices(), false);
     let complex = keep_cones(complex, &none, &progress.part("", 0.35, 0.4))?;
@@ -160,6 +174,7 @@ pub fn flow(map: &SphereMap, settings: &Settings, progress: &Progress) -> Result
         mesh: PolygonMesh::from_faces(positions, &grid.quads)?,
         sphere,
         crosses: field.directions,
+        sizes,
         report: Report {
             n_quads: grid.quads.len(),
             n_cones: field.indices.iter().filter(|&&k| k != 0).count(),
@@ -170,22 +185,22 @@ pub fn flow(map: &SphereMap, settings: &Settings, progress: &Progress) -> Result
     })
 }
 
-/// The field, its singularities tidied for quads of edge length `h`, and the wish.
+/// The field, its singularities tidied for quads of the wanted sizes, and the wish.
 fn dress(
     mesh: &TriangleMesh,
     settings: &Settings,
-    h: f64,
+    sizes: &FaceMap<f64>,
     progress: &Progress,
 ) -> Result<(OrientationField, HalfedgeMap<DVec2>), Error> {
     let mut field = field::orient(mesh, &settings.field, &progress.part("", 0.0, 0.5))?;
-    tidy(mesh, &mut field, h);
+    tidy(mesh, &mut field, sizes);
     field::settle(
         mesh,
         &mut field,
         &settings.field,
         &progress.part("", 0.5, 0.7),
     )?;
-    let wish = wish(mesh, &field, h, &progress.part("", 0.7, 1.0))?;
+    let wish = wish(mesh, &field, sizes, &progress.part("", 0.7, 1.0))?;
     Ok((field, wish))
 }
 

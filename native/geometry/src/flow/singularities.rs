@@ -10,7 +10,7 @@ use std::collections::BinaryHeap;
 use std::f64::consts::PI;
 
 use crate::flow::field::OrientationField;
-use crate::mesh::{HalfedgeId, TriangleMesh, VertexId, VertexMap};
+use crate::mesh::{FaceMap, HalfedgeId, TriangleMesh, VertexId, VertexMap};
 
 /// Opposite singularities closer than this many edges of a quad are merged. Smaller leaves pairs
 /// that the result cannot hold; at 2 to 3 the shape suffers.
@@ -21,20 +21,20 @@ const MERGE_RADIUS_NEGATIVE: f64 = 0.5;
 /// How far apart the units of a split singularity are put.
 const SPLIT_DISTANCE: f64 = 1.1;
 
-/// Merges and splits singularities for quads of edge length `h`.
+/// Merges and splits singularities for quads with edges as long as `sizes` says for each face.
 ///
-/// Opposite ones closer than 1.2 h are merged, nearest first, pairs that cancel before others;
-/// negative ones closer than 0.5 h where the sum is at least −2. Those with index 2 or more, or −3
+/// Opposite ones closer than 1.2 edges are merged, nearest first, pairs that cancel before others;
+/// negative ones closer than half an edge where the sum is at least −2. Those with index 2 or more, or −3
 /// or less, are split into units about an edge of a quad apart, at regular vertices around, as far
 /// as the mesh has any. At the end of a limb these are the four corners of a quad around the tip.
 /// Directions are kept, so along the paths they no longer agree with the turns: see
 /// [`settle`](super::field::settle). Turns, residuals and indices change. O(s · n) for s
 /// singularities.
-pub fn tidy(mesh: &TriangleMesh, field: &mut OrientationField, h: f64) {
+pub fn tidy(mesh: &TriangleMesh, field: &mut OrientationField, sizes: &FaceMap<f64>) {
     // What was split may have come close to others.
     for _ in 0..2 {
-        merge(mesh, field, h);
-        split(mesh, field, h);
+        merge(mesh, field, sizes);
+        split(mesh, field, sizes);
     }
     debug_assert_eq!(field.check(mesh), Ok(()));
 }
@@ -46,14 +46,14 @@ struct Pair {
     path: Vec<HalfedgeId>,
 }
 
-fn merge(mesh: &TriangleMesh, field: &mut OrientationField, h: f64) {
-    let mut pairs = close_pairs(mesh, field, MERGE_RADIUS * h);
+fn merge(mesh: &TriangleMesh, field: &mut OrientationField, sizes: &FaceMap<f64>) {
+    let mut pairs = close_pairs(mesh, field, sizes);
     loop {
         let mut best: Option<(f64, usize)> = None;
         pairs.retain(|pair| pair.ends.iter().all(|&end| field.indices[end] != 0));
         for (i, pair) in pairs.iter().enumerate() {
             let [a, b] = pair.ends.map(|end| field.indices[end]);
-            let Some(cost) = merge_cost([a, b], pair.length / h) else {
+            let Some(cost) = merge_cost([a, b], pair.length) else {
                 continue;
             };
             if best.is_none_or(|(least, _)| cost < least) {
@@ -76,13 +76,13 @@ fn merge_cost([a, b]: [i32; 2], distance: f64) -> Option<f64> {
     (opposite || negative).then_some(if sum == 0 { 0.7 * distance } else { distance })
 }
 
-/// All pairs of singularities closer than `radius`, each once.
-fn close_pairs(mesh: &TriangleMesh, field: &OrientationField, radius: f64) -> Vec<Pair> {
+/// All pairs of singularities that may be close enough, each once.
+fn close_pairs(mesh: &TriangleMesh, field: &OrientationField, sizes: &FaceMap<f64>) -> Vec<Pair> {
     let singular = |v: &VertexId| field.indices[*v] != 0;
-    let mut reach = Reach::new(mesh);
+    let mut reach = Reach::new(mesh, sizes);
     let mut pairs = Vec::new();
     for a in mesh.vertex_ids().filter(singular) {
-        reach.spread(a, radius);
+        reach.spread(a, MERGE_RADIUS);
         for &b in reach.seen.iter().filter(|&&b| a < b && singular(&b)) {
             pairs.push(Pair {
                 ends: [a, b],
@@ -95,24 +95,25 @@ fn close_pairs(mesh: &TriangleMesh, field: &OrientationField, radius: f64) -> Ve
 }
 
 /// Moves the units of indices of 2 and more, or −3 and less, to places spread around.
-fn split(mesh: &TriangleMesh, field: &mut OrientationField, h: f64) {
-    let mut reach = Reach::new(mesh);
+fn split(mesh: &TriangleMesh, field: &mut OrientationField, sizes: &FaceMap<f64>) {
+    let mut reach = Reach::new(mesh, sizes);
     for v in mesh.vertex_ids() {
         let index = field.indices[v];
         if (-2..=1).contains(&index) {
             continue;
         }
-        reach.spread(v, 2.0 * MERGE_RADIUS * h);
-        for place in places(&reach, field, (index.unsigned_abs() as usize, h)) {
+        reach.spread(v, 2.0 * MERGE_RADIUS);
+        for place in places(&reach, field, (v, index.unsigned_abs() as usize)) {
             shift(field, mesh, &reach.path(place), index.signum());
         }
     }
 }
 
-/// Up to `n` regular vertices on a circle, far from each other, for which `n` singularities are
-/// about an edge of a quad apart.
-fn places(reach: &Reach, field: &OrientationField, (n, h): (usize, f64)) -> Vec<VertexId> {
-    let radius = SPLIT_DISTANCE * h / (2.0 * (PI / n as f64).sin());
+/// Up to `n` regular vertices on a circle round `v`, far from each other, for which `n`
+/// singularities are about an edge of a quad apart.
+fn places(reach: &Reach, field: &OrientationField, (v, n): (VertexId, usize)) -> Vec<VertexId> {
+    let radius = SPLIT_DISTANCE / (2.0 * (PI / n as f64).sin());
+    let size = reach.size_at(v);
     let is_free = |u: &VertexId| field.indices[*u] == 0;
     let free: Vec<VertexId> = reach.seen.iter().copied().filter(is_free).collect();
     let mut places: Vec<VertexId> = Vec::new();
@@ -125,7 +126,7 @@ fn places(reach: &Reach, field: &OrientationField, (n, h): (usize, f64)) -> Vec<
         let best = (0..free.len()).max_by(|&a, &b| rooms[a].total_cmp(&rooms[b]));
         let place = free[best.expect("there are more free vertices than places")];
         for (i, &u) in free.iter().enumerate() {
-            let gap = reach.mesh.position(u).distance(reach.mesh.position(place));
+            let gap = reach.mesh.position(u).distance(reach.mesh.position(place)) / size;
             let room = if u == place {
                 f64::NEG_INFINITY
             } else {
@@ -159,9 +160,10 @@ fn shift(field: &mut OrientationField, mesh: &TriangleMesh, path: &[HalfedgeId],
     field.indices[mesh.target(last)] += quarters;
 }
 
-/// Shortest ways along edges from one vertex (Dijkstra), within a radius.
+/// Shortest ways along edges from one vertex (Dijkstra), within a radius; in edges of quads.
 struct Reach<'a> {
     mesh: &'a TriangleMesh,
+    sizes: &'a FaceMap<f64>,
     distances: VertexMap<f64>,
     /// The last halfedge of the way to each vertex.
     arrivals: VertexMap<Option<HalfedgeId>>,
@@ -171,9 +173,10 @@ struct Reach<'a> {
 }
 
 impl<'a> Reach<'a> {
-    fn new(mesh: &'a TriangleMesh) -> Self {
+    fn new(mesh: &'a TriangleMesh, sizes: &'a FaceMap<f64>) -> Self {
         Self {
             mesh,
+            sizes,
             distances: VertexMap::filled(mesh.n_vertices(), f64::INFINITY),
             arrivals: VertexMap::filled(mesh.n_vertices(), None),
             seen: Vec::new(),
@@ -199,7 +202,7 @@ impl<'a> Reach<'a> {
             self.seen.push(v);
             for h in self.mesh.outgoing(v) {
                 let to = self.mesh.target(h);
-                let step = self.mesh.position(to).distance(self.mesh.position(v));
+                let step = self.mesh.position(to).distance(self.mesh.position(v)) / self.size(h);
                 let through = distance + step;
                 if through <= radius && through < self.distances[to] {
                     if self.distances[to].is_infinite() {
@@ -211,6 +214,18 @@ impl<'a> Reach<'a> {
                 }
             }
         }
+    }
+
+    /// The wanted length of edges at a halfedge.
+    fn size(&self, h: HalfedgeId) -> f64 {
+        let twin = self.mesh.twin(h).expect("the mesh of a field is closed");
+        f64::midpoint(self.sizes[h.face()], self.sizes[twin.face()])
+    }
+
+    /// The same at a vertex.
+    fn size_at(&self, v: VertexId) -> f64 {
+        let first = self.mesh.outgoing(v).next();
+        self.size(first.expect("a vertex of a closed mesh has edges"))
     }
 
     /// The halfedges from the start to a vertex that was reached.
@@ -232,9 +247,13 @@ mod tests {
     use crate::progress::Progress;
     use crate::shapes;
 
+    fn even(mesh: &TriangleMesh, n_quads: f64) -> FaceMap<f64> {
+        FaceMap::filled(mesh.n_faces(), (total_area(mesh) / n_quads).sqrt())
+    }
+
     fn tidied(mesh: &TriangleMesh, n_quads: f64) -> OrientationField {
         let mut field = orient(mesh, &Settings::default(), &Progress::none()).unwrap();
-        tidy(mesh, &mut field, (total_area(mesh) / n_quads).sqrt());
+        tidy(mesh, &mut field, &even(mesh, n_quads));
         field
     }
 
@@ -260,7 +279,8 @@ mod tests {
     fn four_units_at_one_vertex_become_the_corners_of_a_quad() {
         let mesh = shapes::sphere(20);
         let mut field = orient(&mesh, &Settings::default(), &Progress::none()).unwrap();
-        let mut reach = Reach::new(&mesh);
+        let sizes = FaceMap::filled(mesh.n_faces(), 0.3);
+        let mut reach = Reach::new(&mesh, &sizes);
         let regular = |v: &VertexId| field.indices[*v] == 0;
         let tip = mesh.vertex_ids().find(regular).unwrap();
         reach.spread(tip, f64::INFINITY);
@@ -270,7 +290,7 @@ mod tests {
             shift(&mut field, &mesh, &back, -1);
         }
         assert_eq!(field.indices[tip], 4);
-        split(&mesh, &mut field, 0.3);
+        split(&mesh, &mut field, &sizes);
         assert_eq!(field.check(&mesh), Ok(()));
         let at = mesh.position(tip);
         let near = |v: &VertexId| field.indices[*v] == 1 && mesh.position(*v).distance(at) < 0.4;
@@ -288,7 +308,8 @@ mod tests {
     fn a_unit_moved_away_and_back_leaves_the_field_as_it_was() {
         let mesh = shapes::blob(4, 8);
         let before = orient(&mesh, &Settings::default(), &Progress::none()).unwrap();
-        let mut reach = Reach::new(&mesh);
+        let sizes = FaceMap::filled(mesh.n_faces(), 1.0);
+        let mut reach = Reach::new(&mesh, &sizes);
         reach.spread(VertexId(3), f64::INFINITY);
         let path = reach.path(VertexId(200));
         let mut field = before.clone();
@@ -314,12 +335,10 @@ mod tests {
         let path = [mesh.outgoing(v).next().unwrap()];
         let before = field.clone();
         shift(&mut field, &mesh, &path, 1);
-        merge(
-            &mesh,
-            &mut field,
-            mesh.position(v)
-                .distance(mesh.position(mesh.target(path[0]))),
-        );
+        let apart = mesh
+            .position(v)
+            .distance(mesh.position(mesh.target(path[0])));
+        merge(&mesh, &mut field, &FaceMap::filled(mesh.n_faces(), apart));
         assert_eq!((field.turns, field.indices), (before.turns, before.indices));
     }
 }

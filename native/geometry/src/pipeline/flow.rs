@@ -69,6 +69,7 @@ pub fn flow_part(
         quads: &quads,
         wanted: found.mesh.positions(),
         crosses: &found.crosses,
+        sizes: &found.sizes,
     };
     let settings = deform::Settings::default();
     let fit = || deform::deform_flow(&even, flowing, target, &settings, &part);

@@ -120,7 +120,8 @@ fn crosses_follow_a_singularity_that_was_moved() {
     let mesh = shapes::sphere(12);
     let mut field = field_of(&mesh);
     let size = crate::measure::total_area(&mesh).sqrt();
-    crate::flow::singularities::tidy(&mesh, &mut field, 0.3 * size);
+    let sizes = FaceMap::filled(mesh.n_faces(), 0.3 * size);
+    crate::flow::singularities::tidy(&mesh, &mut field, &sizes);
     let before = total_unrest(&field);
     settle(&mesh, &mut field, &Settings::default(), &Progress::none()).unwrap();
     assert!(total_unrest(&field) < before);

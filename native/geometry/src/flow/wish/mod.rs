@@ -33,7 +33,8 @@ pub enum WishError {
     Unsolvable(#[from] NotPositiveDefinite),
 }
 
-/// The wished vector of every halfedge, in its face's frame, for quads of edge length `h`.
+/// The wished vector of every halfedge, in its face's frame, for quads whose edges are as long as
+/// `sizes` says for each face.
 ///
 /// The vectors of a face sum up to zero, and twins' vectors are w and −i^r w, r the turn of the
 /// first. One sparse factorisation, O(n^1.5).
@@ -46,7 +47,7 @@ pub enum WishError {
 pub fn wish(
     mesh: &TriangleMesh,
     field: &OrientationField,
-    h: f64,
+    sizes: &FaceMap<f64>,
     progress: &Progress,
 ) -> Result<HalfedgeMap<DVec2>, WishError> {
     let charts = Charts::new(mesh);
@@ -57,7 +58,8 @@ pub fn wish(
         .halfedge_ids()
         .map(|halfedge| {
             let arm = arms[halfedge.face()];
-            let in_frame = DVec2::new(arm.x, -arm.y).rotate(charts.edge(halfedge) / h);
+            let in_frame =
+                DVec2::new(arm.x, -arm.y).rotate(charts.edge(halfedge) / sizes[halfedge.face()]);
             in_frame.turned(disk.combed[halfedge.face()])
         })
         .collect();

@@ -5,10 +5,10 @@ use crate::measure::total_area;
 use crate::shapes;
 
 fn tidy_wish(mesh: &TriangleMesh, n_quads: f64) -> (OrientationField, HalfedgeMap<DVec2>) {
-    let h = (total_area(mesh) / n_quads).sqrt();
+    let sizes = FaceMap::filled(mesh.n_faces(), (total_area(mesh) / n_quads).sqrt());
     let mut field = orient(mesh, &Settings::default(), &Progress::none()).unwrap();
-    tidy(mesh, &mut field, h);
-    let vectors = wish(mesh, &field, h, &Progress::none()).unwrap();
+    tidy(mesh, &mut field, &sizes);
+    let vectors = wish(mesh, &field, &sizes, &Progress::none()).unwrap();
     (field, vectors)
 }
 
