@@ -5,7 +5,7 @@ use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use orbflow_geometry::embed::{OffsetPredictor, Solver};
 use orbflow_geometry::mesh::io::Format;
-use orbflow_geometry::pipeline::{Kind, MAX_FACES, MIN_FACES, Primitive, Settings};
+use orbflow_geometry::pipeline::{Kind, MAX_FACES, MIN_FACES, Primitive, Settings, Style};
 use orbflow_geometry::score;
 
 use crate::place::Place;
@@ -57,6 +57,8 @@ pub struct Remesh {
     #[arg(long, value_parser = primitive())]
     pub primitive: Option<Primitive>,
     #[command(flatten)]
+    pub flow: Flow,
+    #[command(flatten)]
     pub run: Run,
     /// Write what is told of the run, as JSON
     #[arg(long, value_name = "R.json")]
@@ -64,6 +66,17 @@ pub struct Remesh {
     /// Write the sphere that was deformed, vertex by vertex the same mesh as OUT
     #[arg(long, value_name = "SPHERE_OUT")]
     pub sphere: Option<Place>,
+}
+
+/// How quads flow.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct Flow {
+    /// How quads flow: 0 for smooth loops, 1 along the curvature wherever there is any
+    #[arg(long, value_name = "SHARE", default_value_t = Style::default().follow_shape, value_parser = share)]
+    pub follow_shape: f64,
+    /// How much smaller quads are where the surface is bent: 0 for one size
+    #[arg(long, value_name = "SHARE", default_value_t = Style::default().adaptivity, value_parser = share)]
+    pub adaptivity: f64,
 }
 
 #[derive(Args, Debug)]
@@ -182,6 +195,10 @@ impl Remesh {
             faces: self.faces,
             kind: self.kind(),
             primitive: self.primitive,
+            style: Style {
+                follow_shape: self.flow.follow_shape,
+                adaptivity: self.flow.adaptivity,
+            },
             seed: self.run.seed,
             threads: self.run.threads,
             score: self.report.as_ref().map(|_| score::Settings::default()),
@@ -284,6 +301,14 @@ fn format(values: &'static [Format]) -> ValueParser {
 
 fn kind() -> ValueParser {
     named(&[Kind::Triangles, Kind::Quads], Kind::name)
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let value = text.parse().map_err(|error| format!("{error}"))?;
+    if (0.0..=1.0).contains(&value) {
+        return Ok(value);
+    }
+    Err("it goes from 0 to 1".to_owned())
 }
 
 fn primitive() -> ValueParser {

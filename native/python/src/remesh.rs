@@ -83,6 +83,7 @@ pub fn remesh<'py>(
         primitive: primitive
             .map(|word| report::choice("primitive", word))
             .transpose()?,
+        style: pipeline::Style::default(),
         seed,
         threads,
         score: (score_samples > 0).then(|| score::Settings {

@@ -15,6 +15,14 @@ pub enum Error {
         /// What was asked for.
         faces: usize,
     },
+    /// A setting of the style is out of range.
+    #[error("{name} is {value}; it goes from 0 to 1")]
+    StyleOutOfRange {
+        /// Which.
+        name: &'static str,
+        /// What was asked for.
+        value: f64,
+    },
     /// The primitive has other polygons than were asked for.
     #[error("the {} primitive makes {}, but {} were asked for", primitive.name(), primitive.kind().name(), kind.name())]
     KindMismatch {

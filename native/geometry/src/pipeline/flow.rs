@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::Settings;
 use super::clock::Clock;
 use crate::deform::{self, Deformed, Flowing, Target};
 use crate::embed::{self, Covered};
@@ -47,18 +48,21 @@ pub struct FlowedPart {
 pub fn flow_part(
     map: &SphereMap,
     target: &Target,
-    (n_faces, seed): (usize, u64),
+    (n_faces, settings): (usize, &Settings),
     clock: &mut Clock,
     progress: &Progress<'_>,
 ) -> Result<Result<FlowedPart, String>, Cancelled> {
     let part = progress.part("sphere", 0.0, 0.2);
-    let even = clock.step("sphere", || told(even(map, target, (n_faces, seed), &part)))?;
+    let even = clock.step("sphere", || {
+        told(even(map, target, (n_faces, settings.seed), &part))
+    })?;
     let (even, sphere) = match even {
         Ok(even) => even,
         Err(reason) => return Ok(Err(reason)),
     };
     let part = progress.part("flow", 0.2, 0.8);
-    let found = clock.step("flow", || told(find(&even, n_faces, &part)))?;
+    let style = settings.style.flow(n_faces);
+    let found = clock.step("flow", || told(find(&even, &style, &part)))?;
     let (found, covered) = match found {
         Ok(found) => found,
         Err(reason) => return Ok(Err(reason)),
@@ -130,11 +134,10 @@ fn triangles(mesh: &PolygonMesh) -> TriangleMesh {
 /// The flow of a surface, laid on its sphere.
 fn find(
     map: &SphereMap,
-    n_quads: usize,
+    settings: &flow::Settings,
     progress: &Progress<'_>,
 ) -> Result<(flow::Flow, Covered), pipeline::Error> {
-    let settings = flow::Settings::new(n_quads);
-    let found = flow::flow(map, &settings, &progress.part("", 0.0, 0.95))?;
+    let found = flow::flow(map, settings, &progress.part("", 0.0, 0.95))?;
     let covered = embed::cover(&found.mesh, &found.sphere, &progress.part("", 0.95, 1.0))?;
     Ok((found, covered))
 }

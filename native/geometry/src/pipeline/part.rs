@@ -103,7 +103,7 @@ impl Wanted<'_> {
         let mut flow = None;
         let (mut from, primitive) = (0.0, self.settings.primitive());
         if primitive == Primitive::Flow {
-            let wanted = (self.n_faces, self.settings.seed);
+            let wanted = (self.n_faces, self.settings);
             match flow_part(&map, target, wanted, clock, &progress.part("", 0.0, 0.9))? {
                 Ok(part) => {
                     return Ok(Made {

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Error;
-use crate::score;
+use crate::{flow, score};
 
 /// The fewest faces that can be asked for: those of a tetrahedron.
 pub const MIN_FACES: usize = 4;
@@ -73,6 +73,48 @@ impl Primitive {
     }
 }
 
+/// How quads flow, each from 0 to 1; the default is what most want.
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Style {
+    /// 0 for smooth loops, 1 for edges along the curvature wherever there is any.
+    pub follow_shape: f64,
+    /// 0 for quads of one size, 1 for much smaller ones where the surface is bent.
+    pub adaptivity: f64,
+}
+
+impl Default for Style {
+    fn default() -> Self {
+        Self {
+            follow_shape: 0.5,
+            adaptivity: 0.5,
+        }
+    }
+}
+
+impl Style {
+    /// What the flow of so many quads is asked for.
+    pub(super) fn flow(self, n_quads: usize) -> flow::Settings {
+        let mut settings = flow::Settings::new(n_quads);
+        settings.field.alignment = 0.5 * 4.0_f64.powf(self.follow_shape);
+        settings.sizes.adaptivity = 2.0 * self.adaptivity;
+        settings
+    }
+
+    fn check(self) -> Result<(), Error> {
+        let named = [
+            ("follow shape", self.follow_shape),
+            ("adaptivity", self.adaptivity),
+        ];
+        for (name, value) in named {
+            if !(0.0..=1.0).contains(&value) {
+                return Err(Error::StyleOutOfRange { name, value });
+            }
+        }
+        Ok(())
+    }
+}
+
 /// What a user asks for; the default is what most want.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(default)]
@@ -84,6 +126,8 @@ pub struct Settings {
     pub kind: Kind,
     /// The sphere that is deformed; none chooses adaptive triangles or flow.
     pub primitive: Option<Primitive>,
+    /// How quads flow; nothing else asks for it.
+    pub style: Style,
     /// Where the adaptive primitive's samples start; equal seeds give equal bytes.
     pub seed: u64,
     /// How many threads to use; 0 uses every core. The result does not depend on it.
@@ -99,6 +143,7 @@ impl Default for Settings {
             faces: 2000,
             kind: Kind::Quads,
             primitive: None,
+            style: Style::default(),
             seed: 0,
             threads: 0,
             score: None,
@@ -129,6 +174,7 @@ impl Settings {
 
     pub(super) fn check(&self) -> Result<(), Error> {
         check_faces(self.faces)?;
+        self.style.check()?;
         let primitive = self.primitive();
         if primitive.kind() == self.kind {
             return Ok(());
@@ -150,6 +196,23 @@ pub(super) fn check_faces(faces: usize) -> Result<(), Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn styles_go_from_0_to_1_and_the_default_is_the_flow_s() {
+        assert_eq!(Style::default().flow(700), flow::Settings::new(700));
+        for adaptivity in [-0.1, 1.1, f64::NAN] {
+            let style = Style {
+                adaptivity,
+                ..Style::default()
+            };
+            let settings = Settings {
+                style,
+                ..Settings::default()
+            };
+            let refused = matches!(settings.check(), Err(Error::StyleOutOfRange { .. }));
+            assert!(refused, "{adaptivity}");
+        }
+    }
 
     #[test]
     fn the_primitive_follows_the_kind_and_must_agree_with_it() {
