@@ -282,6 +282,22 @@ fn flowing_quads_cover_the_sphere_once_and_are_as_many_as_asked_for() {
 }
 
 #[test]
+fn flowing_quads_on_limbs_are_not_inverted() {
+    for seed in 0..3 {
+        let wanted = Settings {
+            primitive: Some(Primitive::Flow),
+            ..settings(400, Kind::Quads)
+        };
+        let mesh = common::polygons(&common::limbs(seed, 16));
+        let result = run(&mesh, &wanted).unwrap();
+        let part = &result.report.parts[0];
+        assert!(matches!(part.flow, Some(Flowed::Used { .. })), "{seed}");
+        assert_eq!(part.deform.n_inverted, 0, "{seed}");
+        assert_eq!(check_cover(&result.mesh, &result.sphere), Ok(()), "{seed}");
+    }
+}
+
+#[test]
 fn too_few_quads_to_flow_fall_back_to_the_quad_sphere_and_say_so() {
     let wanted = Settings {
         primitive: Some(Primitive::Flow),

@@ -19,6 +19,7 @@ mod features;
 mod flips;
 mod follow;
 mod project;
+mod reach;
 mod relax;
 mod route;
 mod sheet;
@@ -70,7 +71,7 @@ impl Default for Settings {
             n_straddles: 2,
             anchor: Anchor::default(),
             flow_anchor: Anchor {
-                along: 0.5,
+                along: 0.2,
                 ..Anchor::default()
             },
         }
@@ -103,6 +104,8 @@ pub struct Report {
     pub n_unprojected: usize,
     /// How many moves of vertices in space it took to open inverted quads that flow.
     pub n_opened: usize,
+    /// How many quads have a corner that turns the wrong way all the same.
+    pub n_inverted: usize,
 }
 
 /// Why a primitive cannot be deformed.
@@ -198,9 +201,10 @@ fn fit_to_target(
 }
 
 impl Deformed {
-    fn new(sheet: Sheet, report: Report) -> Self {
+    fn new(sheet: Sheet, mut report: Report) -> Self {
         let (mesh, sphere) = sheet.into_mesh();
         debug_assert_eq!(check_cover(&mesh, &sphere), Ok(()));
+        report.n_inverted = untangle::n_inverted(&mesh);
         Self {
             mesh,
             sphere,
@@ -260,6 +264,7 @@ pub fn deform_flow(
     )?;
     let fit = (settings.n_straddles, settings.flow_anchor);
     report.n_unprojected = fit_to_target(&mut sheet, target, fit, progress)?;
+    reach::reach(&mut sheet, target, progress)?;
     report.n_opened = untangle::untangle(&mut sheet, progress)?;
     Ok(Deformed::new(sheet, report))
 }

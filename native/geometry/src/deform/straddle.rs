@@ -84,7 +84,7 @@ pub(super) fn straddle(
 }
 
 /// The faces cut into triangles, quads along the shorter diagonal.
-fn triangles(sheet: &Sheet) -> Vec<[VertexId; 3]> {
+pub(super) fn triangles(sheet: &Sheet) -> Vec<[VertexId; 3]> {
     let mut triangles = Vec::with_capacity(2 * sheet.faces().len());
     for face in sheet.faces() {
         match *face.corners() {

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 
 use super::sheet::{Point, Sheet};
-use crate::mesh::{VertexId, VertexMap};
+use crate::mesh::{PolygonMesh, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
 
 /// Quality below which a face is opened.
@@ -45,6 +45,20 @@ pub(super) fn untangle(sheet: &mut Sheet, progress: &Progress) -> Result<usize, 
         }
     }
     Ok(n_moves)
+}
+
+/// How many quads have a corner that does not turn left seen along the quad's own normal.
+pub(super) fn n_inverted(mesh: &PolygonMesh) -> usize {
+    let is_inverted = |face: &&[VertexId]| {
+        let Ok(p) = <[VertexId; 4]>::try_from(*face).map(|face| face.map(|v| mesh.position(v)))
+        else {
+            return false;
+        };
+        let normal = (p[2] - p[0]).cross(p[3] - p[1]);
+        let turn = |i: usize| (p[(i + 1) % 4] - p[i]).cross(p[(i + 3) % 4] - p[i]);
+        !(0..4).all(|i| turn(i).dot(normal) > 0.0)
+    };
+    mesh.faces().filter(is_inverted).count()
 }
 
 /// The vertices of bad faces, each once.
@@ -98,6 +112,18 @@ mod tests {
     use crate::shapes;
     use crate::sphere::quad_sphere;
     use crate::sphere_map::SphereMap;
+
+    #[test]
+    fn quads_with_a_corner_that_turns_back_are_counted() {
+        let quad = |corner: [f64; 2]| {
+            let flat = [[0.0, 0.0], [1.0, 0.0], corner, [0.0, 1.0]];
+            let positions = flat.map(|[x, y]| DVec3::new(x, y, 0.0)).to_vec();
+            PolygonMesh::from_faces(positions, &[[0u32, 1, 2, 3]]).unwrap()
+        };
+        let counts =
+            [[1.0, 1.0], [0.6, 0.6], [0.4, 0.4], [-0.2, 2.0]].map(|c| n_inverted(&quad(c)));
+        assert_eq!(counts, [0, 0, 1, 1]);
+    }
 
     #[test]
     fn inverted_faces_are_opened_and_the_rest_stays() {

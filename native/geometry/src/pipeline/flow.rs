@@ -1,5 +1,6 @@
 //! Quads that flow: an even surface, its flow, a cover of the sphere, the fit.
 
+use glam::DVec3;
 use serde::Serialize;
 
 use super::Settings;
@@ -7,6 +8,7 @@ use super::clock::Clock;
 use crate::deform::{self, Deformed, Flowing, Target};
 use crate::embed::{self, Covered};
 use crate::mesh::{PolygonMesh, TriangleMesh, VertexId, VertexMap};
+use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
 use crate::sphere::{self, Adaptive};
 use crate::sphere_map::SphereMap;
@@ -19,12 +21,19 @@ const MOST_TRIANGLES_PER_QUAD: usize = 40;
 /// And at least this many per quad: below, quads have no vertex inside that places them.
 const TRIANGLES_PER_QUAD: usize = 5;
 
+/// Points of the surface farther from the quads than this many edges are missed: a limb is cut off.
+const MOST_MISSED: f64 = 2.0;
+/// How many points are asked.
+const N_PROBES: usize = 4_000;
+
 /// Whether a part's quads flow.
 #[derive(Clone, PartialEq, Debug, Serialize)]
 #[serde(tag = "status", rename_all = "kebab-case")]
 pub enum Flowed {
     /// They do.
     Used {
+        /// With which settings.
+        attempt: Attempt,
         /// How they were found.
         flow: flow::Report,
         /// What had to be repaired to lay them on the sphere.
@@ -37,55 +46,162 @@ pub enum Flowed {
     },
 }
 
+/// Settings of the flow, in the order in which they are tried while quads come out inverted.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Attempt {
+    /// The usual ones.
+    Usual,
+    /// A field that follows the shape less.
+    Smoother,
+    /// A field that follows it more, and other random moves.
+    Closer,
+}
+
+impl Attempt {
+    const ALL: [Self; 3] = [Self::Usual, Self::Smoother, Self::Closer];
+
+    fn settings(self, style: &flow::Settings) -> flow::Settings {
+        let mut settings = style.clone();
+        match self {
+            Self::Usual => {}
+            Self::Smoother => settings.field.alignment *= 0.5,
+            Self::Closer => {
+                settings.field.alignment *= 2.0;
+                settings.search.seed += 1;
+            }
+        }
+        settings
+    }
+}
+
 /// A part whose quads flow.
 pub struct FlowedPart {
     pub deformed: Deformed,
+    /// How many quads fail the gate: those that are inverted, or all where a part of the surface
+    /// is missed.
+    pub n_failed: usize,
     pub sphere: sphere::Report,
     pub flowed: Flowed,
 }
 
+/// An even surface and what its quads are fitted to.
+struct Ground<'a> {
+    even: SphereMap,
+    sphere: sphere::Report,
+    target: &'a Target,
+    style: flow::Settings,
+}
+
 /// Makes flowing quads of a part; the text of an error is the reason to use something else.
+///
+/// Other settings are tried while quads are inverted or a part of the surface is missed; the first
+/// of those with the fewest is it.
 pub fn flow_part(
     map: &SphereMap,
     target: &Target,
-    (n_faces, settings): (usize, &Settings),
+    (n_quads, settings): (usize, &Settings),
     clock: &mut Clock,
     progress: &Progress<'_>,
 ) -> Result<Result<FlowedPart, String>, Cancelled> {
     let part = progress.part("sphere", 0.0, 0.2);
     let even = clock.step("sphere", || {
-        told(even(map, target, (n_faces, settings.seed), &part))
+        told(even(map, target, (n_quads, settings.seed), &part))
     })?;
     let (even, sphere) = match even {
         Ok(even) => even,
         Err(reason) => return Ok(Err(reason)),
     };
-    let part = progress.part("flow", 0.2, 0.8);
-    let style = settings.style.flow(n_faces);
-    let found = clock.step("flow", || told(find(&even, &style, &part)))?;
-    let (found, covered) = match found {
-        Ok(found) => found,
-        Err(reason) => return Ok(Err(reason)),
-    };
-    let part = progress.part("deform", 0.8, 1.0);
-    let quads = found.mesh.with_positions(covered.sphere);
-    let flowing = Flowing {
-        quads: &quads,
-        wanted: found.mesh.positions(),
-        crosses: &found.crosses,
-        sizes: &found.sizes,
-    };
-    let settings = deform::Settings::default();
-    let fit = || deform::deform_flow(&even, flowing, target, &settings, &part);
-    let deformed = clock.step("deform", || told(fit().map_err(pipeline::Error::from)))?;
-    Ok(deformed.map(|deformed| FlowedPart {
-        deformed,
+    let ground = Ground {
+        even,
         sphere,
-        flowed: Flowed::Used {
-            flow: found.report,
-            cover: covered.report,
-        },
-    }))
+        target,
+        style: settings.style.flow(n_quads),
+    };
+    let mut best: Result<FlowedPart, String> = Err(String::new());
+    let mut from = 0.2;
+    for attempt in Attempt::ALL {
+        let to = from + 0.6 * (1.0 - from);
+        let found = ground.attempt(attempt, clock, &progress.part("", from, to))?;
+        from = to;
+        best = better(best, found);
+        if best.as_ref().is_ok_and(|best| best.n_failed == 0) {
+            break;
+        }
+    }
+    Ok(best)
+}
+
+/// The one of which fewer quads fail, the first of equals; of two reasons the first.
+fn better(
+    best: Result<FlowedPart, String>,
+    next: Result<FlowedPart, String>,
+) -> Result<FlowedPart, String> {
+    match (&best, &next) {
+        (Ok(old), Ok(new)) if new.n_failed >= old.n_failed => best,
+        (Ok(_), Err(_)) => best,
+        (Err(reason), Err(_)) if !reason.is_empty() => best,
+        _ => next,
+    }
+}
+
+impl Ground<'_> {
+    /// Quads that flow by some settings, laid on the target.
+    fn attempt(
+        &self,
+        attempt: Attempt,
+        clock: &mut Clock,
+        progress: &Progress<'_>,
+    ) -> Result<Result<FlowedPart, String>, Cancelled> {
+        let part = progress.part("flow", 0.0, 0.75);
+        let settings = attempt.settings(&self.style);
+        let found = clock.step("flow", || told(find(&self.even, &settings, &part)))?;
+        let (found, covered) = match found {
+            Ok(found) => found,
+            Err(reason) => return Ok(Err(reason)),
+        };
+        let part = progress.part("deform", 0.75, 1.0);
+        let quads = found.mesh.with_positions(covered.sphere);
+        let flowing = Flowing {
+            quads: &quads,
+            wanted: found.mesh.positions(),
+            crosses: &found.crosses,
+            sizes: &found.sizes,
+        };
+        let settings = deform::Settings::default();
+        let fit = || deform::deform_flow(&self.even, flowing, self.target, &settings, &part);
+        let deformed = clock.step("deform", || told(fit().map_err(pipeline::Error::from)))?;
+        Ok(deformed.map(|deformed| FlowedPart {
+            n_failed: self.n_failed(&deformed),
+            deformed,
+            sphere: self.sphere.clone(),
+            flowed: Flowed::Used {
+                attempt,
+                flow: found.report,
+                cover: covered.report,
+            },
+        }))
+    }
+}
+
+impl Ground<'_> {
+    /// How many quads fail the gate.
+    fn n_failed(&self, Deformed { mesh, report, .. }: &Deformed) -> usize {
+        let halves = mesh
+            .faces()
+            .flat_map(|f| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]]);
+        let halves: Vec<_> = halves.map(|t| t.map(|v| mesh.position(v))).collect();
+        let area = |[a, b, c]: &[DVec3; 3]| (b - a).cross(c - a).length() / 2.0;
+        let quad_area = halves.iter().map(area).sum::<f64>() / mesh.n_faces() as f64;
+        let bvh = Bvh::new(&halves);
+        let points = self.target.mesh().positions();
+        let some = points.iter().step_by(points.len().div_ceil(N_PROBES));
+        let farthest = some.map(|&p| bvh.closest(p).distance_squared);
+        if farthest.fold(0.0, f64::max) > MOST_MISSED * MOST_MISSED * quad_area {
+            return mesh.n_faces() + report.n_inverted;
+        }
+        report.n_inverted
+    }
 }
 
 /// Splits a cancellation, which ends the run, from the reasons to use something else.

@@ -21,7 +21,7 @@ mod verbs;
 
 pub use clock::{Step, peak_memory_mb};
 pub use error::Error;
-pub use flow::Flowed;
+pub use flow::{Attempt, Flowed};
 pub use report::{PartReport, Reduced, Report};
 pub use settings::{Kind, MAX_FACES, MIN_FACES, Primitive, Settings, Style};
 pub use verbs::{Decimated, EmbedReport, EmbeddedParts, decimate, embed};
