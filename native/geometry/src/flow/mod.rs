@@ -1,8 +1,9 @@
 //! Flow: quads whose edges follow the shape, read off a flat metric with integer periods.
 //!
 //! A smooth [`field`] of crosses says how the quads should lie; where it turns by a quarter too
-//! much or too little around a vertex, the result has an irregular vertex ([`singularities`]). The
-//! [`wish`] is the flat map that follows the field best, in units of a quad's edge.
+//! much or too little around a vertex, the result has an irregular vertex ([`singularities`]).
+//! [`sizes`] say how long edges should be where. The [`wish`] is the flat map that follows the field
+//! best, in units of a quad's edge.
 //!
 //! That metric is decided by free Gaussian integers, its [`periods`]. [`drag`] moves it through
 //! valid metrics only, [`rounding`] to whole periods, with [`rings`] round the limbs imposed
