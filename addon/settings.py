@@ -5,7 +5,7 @@
 from typing import Any
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, IntProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 MIN_FACES = 4
 MAX_FACES = 4_000_000
@@ -41,6 +41,22 @@ class Settings:
         name="Primitive",
         description="The sphere that is deformed into the mesh",
         items=_PRIMITIVES,
+    )
+    follow_shape: FloatProperty(
+        name="Follow Shape",
+        description="Flowing quads: 0 makes smooth loops, 1 lays edges along the curvature",
+        default=0.5,
+        min=0.0,
+        max=1.0,
+        subtype="FACTOR",
+    )
+    adaptivity: FloatProperty(
+        name="Adaptivity",
+        description="Flowing quads: 0 makes all of one size, 1 much smaller ones where it bends",
+        default=0.5,
+        min=0.0,
+        max=1.0,
+        subtype="FACTOR",
     )
     predictor: EnumProperty(
         name="Predictor",
@@ -89,7 +105,7 @@ def copy(source: Settings, target: object) -> None:
         setattr(target, name, getattr(source, name))
 
 
-def _value(value: str | int) -> str | int | None:
+def _value(value: str | float) -> str | float | None:
     if value == "AUTO":
         return None
     return value.lower().replace("_", "-") if isinstance(value, str) else value

@@ -51,16 +51,27 @@ def test_the_binding_has_the_defaults_of_the_core() -> None:
     given = defaults(_core.remesh)
     for name in given.keys() & orbflow_native.DEFAULTS.keys():
         assert given[name] == orbflow_native.DEFAULTS[name], name
+    for name, value in orbflow_native.DEFAULTS["style"].items():
+        assert given[name] == value, name
 
 
 def test_panel_and_operator_have_the_same_settings(operator: Any, scene_settings: Any) -> None:  # noqa: ANN401
-    for name in ("faces", "kind", "primitive", "predictor", "threads", "seed"):
+    for name in (
+        "faces",
+        "kind",
+        "primitive",
+        "follow_shape",
+        "adaptivity",
+        "predictor",
+        "threads",
+        "seed",
+    ):
         assert operator[name].default == scene_settings[name].default, name
 
 
 def test_the_add_on_has_the_defaults_and_ranges_of_the_core(operator: Any) -> None:  # noqa: ANN401
     given = defaults(_core.remesh)
-    for name in ("faces", "threads", "seed"):
+    for name in ("faces", "follow_shape", "adaptivity", "threads", "seed"):
         assert operator[name].default == given[name], name
     assert operator["faces"].hard_min == orbflow_native.MIN_FACES
     assert operator["faces"].hard_max == orbflow_native.MAX_FACES

@@ -138,6 +138,8 @@ def remesh(
     faces: int = 2000,
     kind: str = "quads",
     primitive: str | None = None,
+    follow_shape: float = 0.5,
+    adaptivity: float = 0.5,
     predictor: str = "solver",
     threads: int = 0,
     seed: int = 0,

@@ -51,6 +51,8 @@ def remesh(
     faces: int = 2000,
     kind: str = "quads",
     primitive: str | None = None,
+    follow_shape: float = 0.5,
+    adaptivity: float = 0.5,
     predictor: str = "solver",
     threads: int = 0,
     seed: int = 0,
@@ -65,7 +67,9 @@ def remesh(
 
     Keeps the topology, the direction of the faces and their materials. `kind` is "quads" or
     "triangles"; `primitive` is "flow", "quad-sphere", "adaptive", "icosphere" or `None` for what
-    suits the kind. `scale` is the scale of the object: faces are even in the scaled space, the
+    suits the kind. How quads flow: `follow_shape` from 0 (smooth loops) to 1 (edges along the
+    curvature), `adaptivity` from 0 (quads of one size) to 1 (much smaller where the surface is
+    bent). `scale` is the scale of the object: faces are even in the scaled space, the
     result is in the space of the input. `reduced` is the same mesh with fewer triangles, as
     points (V, 3) and triangles (T, 3); without it, fast-simplification makes it for large
     meshes where installed.
@@ -84,6 +88,8 @@ def remesh(
         faces=faces,
         kind=kind,
         primitive=primitive,
+        follow_shape=follow_shape,
+        adaptivity=adaptivity,
         predictor=predictor,
         threads=threads,
         seed=seed,

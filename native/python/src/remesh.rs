@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use numpy::{PyArray1, PyArray2};
-use orbflow_geometry::pipeline::{self, Input, Settings};
+use orbflow_geometry::pipeline::{self, Input, Settings, Style};
 use orbflow_geometry::score;
 use pyo3::prelude::*;
 
@@ -31,6 +31,8 @@ pub struct Remeshed {
 ///
 /// Keeps the topology, the direction of the faces and their materials. `scale` is the scale of the
 /// object: faces are even in the scaled space, the result is in the space of the input.
+/// How quads flow: `follow_shape` from 0 (smooth loops) to 1 (edges along the curvature), `adaptivity`
+/// from 0 (quads of one size) to 1 (much smaller where the surface is bent).
 /// `score_samples` is how many points of each surface the score looks at; 0 makes no score.
 /// `progress` is called on the calling thread, at most 20 times a second, with the name of the step
 /// and the share of the work that is done. The same input and settings give the same bytes.
@@ -39,8 +41,8 @@ pub struct Remeshed {
 #[pyfunction]
 #[pyo3(signature = (
     positions, loop_start, corner_vert, *, faces=2000, kind="quads", primitive=None,
-    predictor="solver", threads=0, seed=0, scale=None, score_samples=10_000, material_index=None,
-    reduced=None, progress=None, cancel=None,
+    follow_shape=0.5, adaptivity=0.5, predictor="solver", threads=0, seed=0, scale=None,
+    score_samples=10_000, material_index=None, reduced=None, progress=None, cancel=None,
 ))]
 #[expect(
     clippy::too_many_arguments,
@@ -54,6 +56,8 @@ pub fn remesh<'py>(
     faces: usize,
     kind: &str,
     primitive: Option<&str>,
+    follow_shape: f64,
+    adaptivity: f64,
     predictor: &str,
     threads: usize,
     seed: u64,
@@ -83,7 +87,10 @@ pub fn remesh<'py>(
         primitive: primitive
             .map(|word| report::choice("primitive", word))
             .transpose()?,
-        style: pipeline::Style::default(),
+        style: Style {
+            follow_shape,
+            adaptivity,
+        },
         seed,
         threads,
         score: (score_samples > 0).then(|| score::Settings {
