@@ -253,6 +253,21 @@ mod tests {
     }
 
     #[test]
+    fn the_area_of_periods_is_known_before_they_are_reached() {
+        for seed in 0..10 {
+            let (complex, mut state, to) = problem(seed, 4.0);
+            let vector = |h| complex.coefficients.value(h, &to);
+            let double = |f| {
+                let h = complex.halfedge(f);
+                vector(h).perp_dot(vector(h.next()))
+            };
+            let area = 0.5 * complex.face_ids().map(double).sum::<f64>();
+            assert_eq!(state.drag(&to, 0.1), 1.0);
+            assert!((state.complex.area() - area).abs() < 1e-9 * area);
+        }
+    }
+
+    #[test]
     fn rough_angles_are_near() {
         for i in 1..2000 {
             let angle = f64::from(i) * PI / 2000.0;

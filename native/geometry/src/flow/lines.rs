@@ -262,8 +262,17 @@ impl<'a> Tracer<'a> {
 #[cfg(test)]
 #[allow(clippy::float_cmp)] // No spiral is exactly none.
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
     use crate::flow::complex::tests::box_complex;
+    use crate::flow::covariance::Dense;
+    use crate::flow::drag::State;
+    use crate::flow::grid::read_quads;
+    use crate::flow::periods::choose;
+    use crate::flow::rounding::Rounding;
+    use crate::flow::strips::strips;
+    use crate::random::Random;
 
     #[test]
     fn the_lines_of_a_box_are_its_sections() {
@@ -290,6 +299,27 @@ mod tests {
                 );
                 assert!((after.loops - before.loops).abs() < 1e-12);
             }
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(24))]
+        #[test]
+        fn lines_agree_with_those_of_the_grid(seed: u64, scale in 0.6..1.6f64) {
+            let mut complex = box_complex(1);
+            let basis = choose(&mut complex).unwrap();
+            let mut random = Random::new(seed);
+            let wish = basis.wish.iter().map(|x| x * scale + 3.0 * (random.unit() - 0.5)).collect();
+            let covariance = Dense::energy(&complex).inverse();
+            let state = State::new(&complex, basis.start);
+            let whole = Rounding::new(state, wish, covariance).round();
+            prop_assume!(whole.is_some());
+            let whole = whole.unwrap().complex;
+            let (quads, n_vertices) = read_quads(&whole).unwrap();
+            let [own, read] = [trace(&whole), strips(&quads, n_vertices).unwrap()];
+            prop_assert_eq!(own.n_strips, read.n_strips);
+            prop_assert!((own.spiral - read.spiral).abs() < 1e-12);
+            prop_assert!((own.loops - read.loops).abs() < 1e-12);
         }
     }
 }

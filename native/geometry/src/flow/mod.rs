@@ -6,7 +6,7 @@
 //! best, in units of a quad's edge.
 //!
 //! That metric is decided by free Gaussian integers, its [`periods`]. [`drag`] moves it through
-//! valid metrics only, [`rounding`] to whole periods, with [`rings`] round the limbs imposed
+//! valid metrics only, [`rounding`] to whole periods, with rings round the limbs imposed
 //! first; a [`search`] of counted trials picks and improves. Its unit [`grid`] is the quads.
 
 pub mod complex;
@@ -17,11 +17,11 @@ pub mod creases;
 pub mod drag;
 pub mod field;
 pub mod grid;
-pub mod lines;
+mod lines;
 pub mod periods;
 pub mod place;
-pub mod quads;
-pub mod rings;
+mod quads;
+mod rings;
 pub mod rounding;
 pub mod search;
 pub mod singularities;

@@ -143,6 +143,32 @@ fn flips_carry_the_coefficients_along() {
 }
 
 #[test]
+fn rows_outlive_many_flips() {
+    // Far more flips than there are edges, so that rows no longer in use are dropped on the way.
+    let mut complex = box_complex(2);
+    let basis = choose(&mut complex).unwrap();
+    let mut random = Random::new(7);
+    for _ in 0..3000 {
+        let h = HalfedgeId::from_index(random.below(complex.twins.len()));
+        complex.reframe(h.face(), random.below(4) as u8);
+        if complex.is_flippable(h, 1e-3) {
+            complex.flip(h);
+        }
+    }
+    assert_reproduces(&complex, &basis);
+    let wanted = complex.halfedge_ids().map(|h| {
+        let row = complex.coefficients.row(h);
+        row.fold(DVec2::ZERO, |sum, (j, c)| {
+            let period = DVec2::new(basis.start[2 * j], basis.start[2 * j + 1]);
+            sum + c.as_dvec2().rotate(period)
+        })
+    });
+    for (h, wanted) in complex.halfedge_ids().zip(wanted) {
+        assert!(complex.coefficients.value(h, &basis.start).distance(wanted) < 1e-9);
+    }
+}
+
+#[test]
 fn two_spheres_are_refused() {
     let one = octahedron(&[0; 12]);
     let mut two = one.clone();
