@@ -57,7 +57,8 @@ fn reduced(mesh: &TriangleMesh, n_quads: usize) -> Complex {
 
 fn flat(mesh: &TriangleMesh, field: &OrientationField, wish: HalfedgeMap<DVec2>) -> Complex {
     let quiet = Progress::none();
-    let complex = conformal::flatten(mesh, field, wish, &quiet).expect("cones add up to a sphere");
+    let complex =
+        conformal::flatten(mesh, field, wish, &[], &quiet).expect("cones add up to a sphere");
     let none = VertexMap::filled(mesh.n_vertices(), false);
     cones::keep_cones(complex, &none, &quiet).expect("not cancelled")
 }
@@ -114,7 +115,8 @@ fn fit(bencher: Bencher, n_quads: usize) {
     let map = embedded(body());
     let grid = whole(map.mesh(), n_quads).grid;
     let quads = (grid.n_vertices, &grid.quads[..]);
-    bencher.bench(|| place(&map, quads, &grid.cells, &Progress::none()).expect("it is solvable"));
+    bencher
+        .bench(|| place(&map, quads, &grid.cells, &[], &Progress::none()).expect("it is solvable"));
 }
 
 fn embedded(mesh: TriangleMesh) -> SphereMap {

@@ -18,6 +18,7 @@ mod cover;
 mod features;
 mod flips;
 mod follow;
+mod lock;
 mod project;
 mod reach;
 mod relax;
@@ -39,6 +40,8 @@ use crate::mesh::{FaceId, FaceMap, PolygonMesh};
 use crate::progress::{Cancelled, Progress};
 use crate::sphere_map::{NotACover, SphereMap, check_cover};
 use cover::Cover;
+pub use lock::Seam;
+use lock::Seams;
 use sheet::Sheet;
 pub use straddle::Anchor;
 pub use target::Target;
@@ -215,6 +218,8 @@ impl Deformed {
 
 /// Rounds in which flowing quads are led to where they are wanted; later ones move next to nothing.
 const N_LEADS: usize = 8;
+/// Rounds of relaxation between two moves along sharp lines.
+const ROUNDS_PER_SLIDE: usize = 4;
 
 /// Quads on the unit sphere that follow a field of crosses on the map's surface.
 #[derive(Clone, Copy, Debug)]
@@ -227,6 +232,8 @@ pub struct Flowing<'a> {
     pub crosses: &'a FaceMap<DVec3>,
     /// How long edges are wanted at every face of the map's mesh, up to a common factor.
     pub sizes: &'a FaceMap<f64>,
+    /// Vertices that belong on sharp lines of the surface.
+    pub seams: &'a [Seam],
 }
 
 /// Deforms quads that flow into the target's surface, so that their edges keep to the crosses.
@@ -248,7 +255,6 @@ pub fn deform_flow(
     flowing.check(map)?;
     let mut report = Report::default();
     let mut sheet = Sheet::new(map, vertex_normals(map.mesh()), flowing.quads);
-    let part = progress.part("", 0.05, 0.6);
     follow::lead(
         &mut sheet,
         flowing.wanted,
@@ -256,12 +262,21 @@ pub fn deform_flow(
         &progress.part("", 0.0, 0.05),
     )?;
     let mut cover = Cover::new(map, &sheet);
-    report.n_stuck = follow::follow(
+    let mut seams = Seams::new(
         &mut sheet,
         (flowing, &mut cover),
-        settings.n_flow_relaxations,
-        &part,
+        &progress.part("", 0.05, 0.1),
     )?;
+    let n_rounds = settings.n_flow_relaxations;
+    let stars = follow::Stars::new(&sheet);
+    for round in (0..n_rounds).step_by(ROUNDS_PER_SLIDE) {
+        let part = progress.part("", 0.1 + 0.5 * round as f64 / n_rounds as f64, 0.6);
+        let n = ROUNDS_PER_SLIDE.min(n_rounds - round);
+        report.n_stuck = follow::follow(&mut sheet, (flowing, &mut cover), n, &part)?;
+        seams.slide(&mut sheet, &stars);
+    }
+    seams.release_bad(&mut sheet);
+    [report.n_feature_goals, report.n_feature_vertices] = seams.counts(&sheet);
     let fit = (settings.n_straddles, settings.flow_anchor);
     report.n_unprojected = fit_to_target(&mut sheet, target, fit, progress)?;
     reach::reach(&mut sheet, target, progress)?;

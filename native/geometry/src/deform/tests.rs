@@ -176,6 +176,7 @@ fn flowed(mesh: &TriangleMesh, noise: f64, n_flow_relaxations: usize) -> Deforme
         wanted: &wanted,
         crosses: &crosses,
         sizes: &sizes,
+        seams: &[],
     };
     let settings = Settings {
         n_flow_relaxations,
@@ -238,6 +239,7 @@ fn what_flows_needs_a_cross_for_every_face() {
         wanted: quads.positions(),
         crosses: &crosses,
         sizes: &sizes,
+        seams: &[],
     };
     let target = target(mesh);
     let result = deform_flow(

@@ -48,6 +48,7 @@ pub fn keep_cones(
     }
     complex.compact();
     complex.delaunay();
+    complex.shorten_paths();
     Ok(complex)
 }
 

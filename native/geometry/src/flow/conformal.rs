@@ -57,7 +57,7 @@ pub enum FlattenError {
 /// Makes a metric with the field's cones of the lengths of a closed mesh of genus 0, and lays it
 /// into the field's frames; turned and scaled as a whole to fit the wish.
 ///
-/// The triangulation is flipped on the way; wish and turns are carried along. Cost: a sparse
+/// The triangulation is flipped on the way; wish, turns and lines are carried along. Cost: a sparse
 /// factorisation a step, 4–10 steps.
 ///
 /// # Errors
@@ -69,6 +69,7 @@ pub fn flatten(
     mesh: &TriangleMesh,
     field: &OrientationField,
     wish: HalfedgeMap<DVec2>,
+    lines: &[Vec<HalfedgeId>],
     progress: &Progress,
 ) -> Result<Complex, FlattenError> {
     let charts = Charts::new(mesh);
@@ -78,8 +79,10 @@ pub fn flatten(
         wish,
     };
     let nowhere = HalfedgeMap::filled(3 * mesh.n_faces(), DVec2::ZERO);
+    let mut complex = Complex::over(mesh, nowhere, dressing);
+    complex.follow_lines(lines);
     let mut metric = Metric {
-        complex: Complex::over(mesh, nowhere, dressing),
+        complex,
         lengths: mesh
             .halfedge_ids()
             .map(|h| charts.edge(h).length())
@@ -304,7 +307,7 @@ mod tests {
         let mut field = field::orient(mesh, &field::Settings::default(), &quiet).unwrap();
         singularities::tidy(mesh, &mut field, &sizes);
         let wish = wish::wish(mesh, &field, &sizes, &quiet).unwrap();
-        flatten(mesh, &field, wish, &quiet).unwrap()
+        flatten(mesh, &field, wish, &[], &quiet).unwrap()
     }
 
     #[test]
@@ -342,7 +345,7 @@ mod tests {
         let field = field::orient(&mesh, &field::Settings::default(), &quiet).unwrap();
         let wish = HalfedgeMap::filled(3 * mesh.n_faces(), DVec2::X);
         let broken = mesh.with_positions(vec![glam::DVec3::splat(1e300); mesh.n_vertices()]);
-        assert!(flatten(&broken, &field, wish, &quiet).is_err());
+        assert!(flatten(&broken, &field, wish, &[], &quiet).is_err());
     }
 
     #[test]
@@ -353,7 +356,7 @@ mod tests {
         let token = crate::progress::CancelToken::default();
         token.cancel();
         let progress = Progress::silent(token);
-        let result = flatten(&mesh, &field, wish, &progress);
+        let result = flatten(&mesh, &field, wish, &[], &progress);
         assert!(matches!(result, Err(FlattenError::Cancelled(_))));
     }
 }

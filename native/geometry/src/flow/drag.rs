@@ -8,7 +8,7 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use std::sync::Arc;
 
-use super::complex::{Complex, LocatedPoints, Turn};
+use super::complex::{Complex, LocatedPoints, Paths, Turn};
 use super::periods::Periods;
 use crate::mesh::Id;
 
@@ -46,10 +46,11 @@ struct Leg {
 }
 
 impl State {
-    /// A metric at its start. Located points stay behind, see [`State::replay`].
+    /// A metric at its start. Located points and lines stay behind, see [`State::replay`].
     pub fn new(complex: &Complex, periods: Periods) -> Self {
         let mut complex = complex.clone();
         complex.located = LocatedPoints::new(complex.n_faces());
+        complex.paths = Paths::default();
         Self {
             complex,
             periods,

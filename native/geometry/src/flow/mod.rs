@@ -30,4 +30,5 @@ mod stars;
 pub mod strips;
 pub mod wish;
 
+pub use creases::Seam;
 pub use quads::{Error, Flow, Report, Settings, flow};

@@ -12,6 +12,8 @@ use crate::sphere_map::{SphereMap, SurfacePoint, walk_along};
 /// Weight of a vertex's distance to the middle of its neighbours, against 1 for each vertex of the
 /// surface. At 0.005 quads on thin limbs turn over; above 0.3 tips shrink.
 const SMOOTHING: f64 = 0.05;
+/// Weight of a vertex's distance to where it belongs: enough to be there within a hair.
+const GOAL_WEIGHT: f64 = 1e3;
 /// What keeps the system definite where a quad holds no vertex at all.
 const SHIFT: f64 = 1e-9;
 
@@ -47,8 +49,9 @@ pub enum PlaceError {
 
 /// Finds positions for `n_vertices` vertices of quads, given where the surface's vertices lie.
 ///
-/// Minimises Σ |bilinear(quad; s, t) − x|² + 0.05 Σ |umbrella|². The point on the sphere is that of
-/// the surface's face that covers the vertex in the quads. Where there is none it is found by
+/// Minimises Σ |bilinear(quad; s, t) − x|² + 0.05 Σ |umbrella|²; `goals` are places where vertices
+/// belong. The point on the sphere is that of the surface's face that covers the vertex in the
+/// quads. Where there is none it is found by
 /// a walk on the surface, from the vertex nearest in the quads to the position in space: it stays
 /// on its own finger. One factorisation.
 ///
@@ -58,6 +61,7 @@ pub fn place(
     map: &SphereMap,
     (n_vertices, quads): (usize, &[[u32; 4]]),
     cells: &VertexMap<Cell>,
+    goals: &[(u32, DVec3)],
     progress: &Progress,
 ) -> Result<Placed, PlaceError> {
     let mut matrix = SymmetricMatrix::new(n_vertices);
@@ -75,6 +79,10 @@ pub fn place(
         row.extend(star.iter().map(|&other| (other as usize, share)));
         matrix.add_square(&row, SMOOTHING);
         matrix.add(v, v, SHIFT);
+    }
+    for &(v, position) in goals {
+        matrix.add(v as usize, v as usize, GOAL_WEIGHT);
+        positions[v as usize] += position * GOAL_WEIGHT;
     }
     progress.at(0.1)?;
     matrix.factorize()?.solve_vectors(&mut positions);
@@ -190,7 +198,7 @@ mod tests {
     #[test]
     fn a_box_of_six_quads_gets_its_corners() {
         let (map, quads, cells) = sides(12);
-        let placed = place(&map, (8, &quads), &cells, &Progress::none()).unwrap();
+        let placed = place(&map, (8, &quads), &cells, &[], &Progress::none()).unwrap();
         for (i, (p, s)) in placed.positions.iter().zip(&placed.sphere).enumerate() {
             let sign = |bit: usize| (i >> bit & 1) as f64 * 2.0 - 1.0;
             let corner = DVec3::new(sign(0), sign(1), sign(2));
@@ -213,7 +221,7 @@ mod tests {
                 };
             }
         }
-        let placed = place(&map, (8, &quads), &cells, &Progress::none()).unwrap();
+        let placed = place(&map, (8, &quads), &cells, &[], &Progress::none()).unwrap();
         assert!(placed.positions.iter().all(|p| p.is_finite()));
     }
 
@@ -221,7 +229,7 @@ mod tests {
     fn what_is_not_finite_is_refused() {
         let (map, quads, mut cells) = sides(4);
         cells[VertexId(0)].at.x = f64::NAN;
-        let result = place(&map, (8, &quads), &cells, &Progress::none());
+        let result = place(&map, (8, &quads), &cells, &[], &Progress::none());
         assert!(matches!(result, Err(PlaceError::Unsolvable(_))));
     }
 }

@@ -1,11 +1,15 @@
 //! The passes in order: a surface in, quads out.
 
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
 use glam::{DVec2, DVec3};
 use serde::Serialize;
 use thiserror::Error;
 
 use super::cones::keep_cones;
 use super::conformal::{FlattenError, flatten};
+use super::creases::{self, Line, Seam};
 use super::field::{self, FieldError, OrientationField};
 use super::grid::Grid;
 use super::place::{PlaceError, Placed, place};
@@ -13,6 +17,7 @@ use super::search::{self, QuantiseError, Quantised, Score, quantise};
 use super::singularities::tidy;
 use super::sizes::{self, SizesError};
 use super::wish::{WishError, wish};
+use crate::measure::total_area;
 use crate::mesh::{FaceMap, HalfedgeMap, PolygonMesh, PolygonMeshError, TriangleMesh, VertexMap};
 use crate::progress::{Cancelled, Progress};
 use crate::sphere_map::SphereMap;
@@ -26,6 +31,8 @@ pub struct Settings {
     pub field: field::Settings,
     /// How long edges are wanted where.
     pub sizes: sizes::Settings,
+    /// Edges sharper than this, in radians, get edges of quads along them; none: no edge does.
+    pub sharp_angle: Option<f64>,
     /// How long whole periods are searched, and what makes them good.
     pub search: search::Settings,
 }
@@ -37,6 +44,7 @@ impl Settings {
             n_quads,
             field: field::Settings::default(),
             sizes: sizes::Settings::default(),
+            sharp_angle: Some(40f64.to_radians()),
             search: search::Settings::default(),
         }
     }
@@ -53,6 +61,8 @@ pub struct Flow {
     pub crosses: FaceMap<DVec3>,
     /// How long edges are wanted at every face of the surface.
     pub sizes: FaceMap<f64>,
+    /// Vertices that belong on the surface's sharp edges, and where.
+    pub seams: Vec<Seam>,
     /// How they were found.
     pub report: Report,
 }
@@ -70,6 +80,8 @@ pub struct Report {
     pub n_trials: usize,
     /// How many roundings got stuck.
     pub n_stuck: usize,
+    /// How many lines of sharp edges there are, and along how many of them quads lie.
+    pub n_creases: [usize; 2],
 }
 
 /// Why no quads were found.
@@ -159,20 +171,38 @@ pub fn flow(map: &SphereMap, settings: &Settings, progress: &Progress) -> Result
         &settings.sizes,
         &progress.part("", 0.0, 0.05),
     )?;
-    let (field, wish) = dress(mesh, settings, &sizes, &progress.part("", 0.05, 0.2))?;
-    let complex = flatten(mesh, &field, wish, &progress.part("", 0.2, 0.35))?;
-    let none = VertexMap::filled(mesh.n_vertices(), false);
-    let complex = keep_cones(complex, &none, &progress.part("", 0.35, 0.4))?;
-    let part = progress.part("", 0.4, 0.95);
-    let Quantised { grid, report, .. } =
-        quantise(complex, settings.n_quads, &settings.search, &part)?;
-    check(&grid, settings.n_quads, report.score.n_doubled)?;
-    let quads = (grid.n_vertices, &grid.quads[..]);
-    let Placed { positions, sphere } =
-        place(map, quads, &grid.cells, &progress.part("", 0.95, 1.0))?;
+    let Dressed {
+        field,
+        wish,
+        sharp,
+        lines,
+    } = dress(mesh, settings, &sizes, &progress.part("", 0.05, 0.2))?;
+    let dressed = (&field, &wish);
+    let part = progress.part("", 0.2, 0.95);
+    let ends = progress.part("", 0.95, 1.0);
+    let mut found = None;
+    if !lines.is_empty() {
+        found = match whole(mesh, dressed, &lines, settings, &part) {
+            Ok(whole) => Some(lay(map, whole, &lines, &ends)?),
+            // Fewer fixed points leave more ways out.
+            Err(Error::Quantise(_) | Error::Doubled { .. } | Error::Count { .. }) => None,
+            Err(error) => return Err(error),
+        };
+        let on_seams = |laid: &Laid| laid.seams.iter().map(Seam::length).sum();
+        found = found.filter(|laid| creases::are_clear(mesh, &sharp, on_seams(laid)));
+    }
+    let laid = match found {
+        Some(laid) => laid,
+        None => lay(map, whole(mesh, dressed, &[], settings, &part)?, &[], &ends)?,
+    };
+    let Laid {
+        whole: Quantised { grid, report, .. },
+        placed,
+        seams,
+    } = laid;
     Ok(Flow {
-        mesh: PolygonMesh::from_faces(positions, &grid.quads)?,
-        sphere,
+        mesh: PolygonMesh::from_faces(placed.positions, &grid.quads)?,
+        sphere: placed.sphere,
         crosses: field.directions,
         sizes,
         report: Report {
@@ -181,27 +211,108 @@ pub fn flow(map: &SphereMap, settings: &Settings, progress: &Progress) -> Result
             score: report.score,
             n_trials: report.n_trials,
             n_stuck: report.n_stuck,
+            n_creases: [lines.len(), seams.len()],
         },
+        seams,
     })
 }
 
-/// The field, its singularities tidied for quads of the wanted sizes, and the wish.
+/// The grid of whole periods, with the ends of lines among its vertices.
+fn whole(
+    mesh: &TriangleMesh,
+    (field, wish): (&OrientationField, &HalfedgeMap<DVec2>),
+    lines: &[Line],
+    settings: &Settings,
+    progress: &Progress,
+) -> Result<Quantised, Error> {
+    let followed: Vec<_> = lines.iter().map(|line| line.halfedges.clone()).collect();
+    let part = progress.part("", 0.0, 0.2);
+    let complex = flatten(mesh, field, wish.clone(), &followed, &part)?;
+    let mut is_wanted = VertexMap::filled(mesh.n_vertices(), false);
+    for &end in lines.iter().flat_map(|line| &line.ends) {
+        is_wanted[end] = true;
+    }
+    let complex = keep_cones(complex, &is_wanted, &progress.part("", 0.2, 0.25))?;
+    let part = progress.part("", 0.25, 1.0);
+    let whole = quantise(complex, settings.n_quads, &settings.search, &part)?;
+    check(&whole.grid, settings.n_quads, whole.report.score.n_doubled)?;
+    Ok(whole)
+}
+
+/// A grid with first positions, and which of its vertices belong on lines.
+struct Laid {
+    whole: Quantised,
+    placed: Placed,
+    seams: Vec<Seam>,
+}
+
+fn lay(
+    map: &SphereMap,
+    whole: Quantised,
+    lines: &[Line],
+    progress: &Progress,
+) -> Result<Laid, Error> {
+    let grid = &whole.grid;
+    let quads = (grid.n_vertices, &grid.quads[..]);
+    let mut placed = place(map, quads, &grid.cells, &[], progress)?;
+    let laid = (&grid.quads[..], &placed.positions[..]);
+    let seams = creases::seams(map.mesh(), lines, &whole.complex, laid);
+    if !seams.is_empty() {
+        let goals: BTreeMap<u32, DVec3> = seams.iter().flat_map(Seam::goals).collect();
+        let goals: Vec<_> = goals.into_iter().collect();
+        placed = place(map, quads, &grid.cells, &goals, progress)?;
+    }
+    Ok(Laid {
+        whole,
+        placed,
+        seams,
+    })
+}
+
+/// What a surface wears before it is made flat.
+struct Dressed {
+    field: OrientationField,
+    wish: HalfedgeMap<DVec2>,
+    sharp: HalfedgeMap<bool>,
+    lines: Vec<Line>,
+}
+
+/// The field, its singularities tidied for quads of edge length `h`, the wish, and the lines of
+/// sharp edges if these are clear.
 fn dress(
     mesh: &TriangleMesh,
     settings: &Settings,
     sizes: &FaceMap<f64>,
     progress: &Progress,
-) -> Result<(OrientationField, HalfedgeMap<DVec2>), Error> {
-    let mut field = field::orient(mesh, &settings.field, &progress.part("", 0.0, 0.5))?;
+) -> Result<Dressed, Error> {
+    let sharp_angle = settings.sharp_angle.unwrap_or(f64::INFINITY);
+    let pull = field::Settings {
+        sharp_angle: sharp_angle.min(PI),
+        ..settings.field
+    };
+    let sharp = creases::sharp_edges(mesh, sharp_angle);
+    let mut field = field::orient(mesh, &pull, &progress.part("", 0.0, 0.5))?;
     tidy(mesh, &mut field, sizes);
-    field::settle(
-        mesh,
-        &mut field,
-        &settings.field,
-        &progress.part("", 0.5, 0.7),
-    )?;
+    let h = (total_area(mesh) / settings.n_quads.max(1) as f64).sqrt();
+    let all = creases::lines(mesh, &field, &sharp, h);
+    let on_lines = all.iter().map(|line| line.length(mesh)).sum();
+    let are_clear = creases::are_clear(mesh, &sharp, on_lines);
+    if are_clear {
+        creases::attract(mesh, &mut field, &sharp, sizes);
+    }
+    field::settle(mesh, &mut field, &pull, &progress.part("", 0.5, 0.7))?;
     let wish = wish(mesh, &field, sizes, &progress.part("", 0.7, 1.0))?;
-    Ok((field, wish))
+    let lines = if are_clear {
+        creases::lines(mesh, &field, &sharp, h)
+    } else {
+        Vec::new()
+    };
+    Ok(Dressed {
+        field,
+        wish,
+        sharp,
+        lines,
+    })
 }
 
 fn check(grid: &Grid, n_wanted: usize, n_doubled: usize) -> Result<(), Error> {

@@ -53,6 +53,17 @@ impl Rounding {
         }
     }
 
+    /// The same with a wish so many times as large, dragged there as far as it goes.
+    #[must_use]
+    pub fn scaled(&self, scale: f64) -> Self {
+        let mut scaled = self.clone();
+        for x in &mut scaled.wish {
+            *x *= scale;
+        }
+        scaled.is_reached = scaled.state.drag(&scaled.wish, SHORT) >= 1.0;
+        scaled
+    }
+
     /// Makes all periods whole.
     ///
     /// None when a period has no whole value that can be reached.

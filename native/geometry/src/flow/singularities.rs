@@ -144,7 +144,12 @@ fn places(reach: &Reach, field: &OrientationField, (v, n): (VertexId, usize)) ->
 }
 
 /// Moves `quarters` of index from the start of a path to its end.
-fn shift(field: &mut OrientationField, mesh: &TriangleMesh, path: &[HalfedgeId], quarters: i32) {
+pub(super) fn shift(
+    field: &mut OrientationField,
+    mesh: &TriangleMesh,
+    path: &[HalfedgeId],
+    quarters: i32,
+) {
     let [Some(&first), Some(&last)] = [path.first(), path.last()] else {
         return;
     };
@@ -161,7 +166,7 @@ fn shift(field: &mut OrientationField, mesh: &TriangleMesh, path: &[HalfedgeId],
 }
 
 /// Shortest ways along edges from one vertex (Dijkstra), within a radius; in edges of quads.
-struct Reach<'a> {
+pub(super) struct Reach<'a> {
     mesh: &'a TriangleMesh,
     sizes: &'a FaceMap<f64>,
     distances: VertexMap<f64>,
@@ -173,7 +178,7 @@ struct Reach<'a> {
 }
 
 impl<'a> Reach<'a> {
-    fn new(mesh: &'a TriangleMesh, sizes: &'a FaceMap<f64>) -> Self {
+    pub fn new(mesh: &'a TriangleMesh, sizes: &'a FaceMap<f64>) -> Self {
         Self {
             mesh,
             sizes,
@@ -184,7 +189,7 @@ impl<'a> Reach<'a> {
         }
     }
 
-    fn spread(&mut self, from: VertexId, radius: f64) {
+    pub fn spread(&mut self, from: VertexId, radius: f64) {
         for v in self.touched.drain(..) {
             self.distances[v] = f64::INFINITY;
             self.arrivals[v] = None;
@@ -228,8 +233,18 @@ impl<'a> Reach<'a> {
         self.size(first.expect("a vertex of a closed mesh has edges"))
     }
 
+    /// The vertices within the radius, nearest first.
+    pub fn seen(&self) -> &[VertexId] {
+        &self.seen
+    }
+
+    /// How far a vertex is from the start; infinite beyond the radius.
+    pub fn distance(&self, vertex: VertexId) -> f64 {
+        self.distances[vertex]
+    }
+
     /// The halfedges from the start to a vertex that was reached.
-    fn path(&self, to: VertexId) -> Vec<HalfedgeId> {
+    pub fn path(&self, to: VertexId) -> Vec<HalfedgeId> {
         let step = |v: VertexId| self.arrivals[v];
         let last = step(to);
         let mut path: Vec<HalfedgeId> =

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::Settings;
 use super::clock::Clock;
-use crate::deform::{self, Deformed, Flowing, Target};
+use crate::deform::{self, Deformed, Flowing, Seam, Target};
 use crate::embed::{self, Covered};
 use crate::mesh::{PolygonMesh, TriangleMesh, VertexId, VertexMap};
 use crate::nearest::Bvh;
@@ -167,6 +167,7 @@ impl Ground<'_> {
             wanted: found.mesh.positions(),
             crosses: &found.crosses,
             sizes: &found.sizes,
+            seams: &seams(&found.seams),
         };
         let settings = deform::Settings::default();
         let fit = || deform::deform_flow(&self.even, flowing, self.target, &settings, &part);
@@ -202,6 +203,16 @@ impl Ground<'_> {
         }
         report.n_inverted
     }
+}
+
+/// The seams as the deformation knows them.
+fn seams(found: &[flow::Seam]) -> Vec<Seam> {
+    let seam = |seam: &flow::Seam| Seam {
+        vertices: seam.vertices.iter().map(|&v| VertexId(v)).collect(),
+        at: seam.at.clone(),
+        points: seam.points.clone(),
+    };
+    found.iter().map(seam).collect()
 }
 
 /// Splits a cancellation, which ends the run, from the reasons to use something else.

@@ -85,6 +85,7 @@ impl Complex {
         );
         self.align(h);
         let moves = flip_moves(h, t);
+        self.paths.detour([h, t], &moves);
         let [c, d] = [self.origins[h.prev()], self.origins[t.prev()]];
         move_values(&mut self.origins, &moves);
         move_values(&mut self.turns, &moves);

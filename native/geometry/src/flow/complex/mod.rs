@@ -10,6 +10,7 @@ mod check;
 mod delaunay;
 mod flip;
 mod located;
+mod paths;
 mod remove;
 mod rows;
 mod turn;
@@ -21,6 +22,7 @@ use crate::mesh::{FaceId, HalfedgeId, HalfedgeMap, Id, TriangleMesh, VertexId, V
 pub use check::BrokenComplex;
 pub(in crate::flow) use flip::{flip_moves, move_values};
 pub use located::{Located, LocatedPoints};
+pub use paths::{Paths, Step};
 pub use rows::Rows;
 pub use turn::Turn;
 
@@ -53,6 +55,8 @@ pub struct Complex {
     pub original: Vec<VertexId>,
     /// Vertices of the mesh that lie inside faces.
     pub located: LocatedPoints,
+    /// Lines along edges, which flips lead round what they take away.
+    pub paths: Paths,
 }
 
 /// What a complex carries from the orientation field.
@@ -90,6 +94,7 @@ impl Complex {
                 .collect(),
             original: mesh.vertex_ids().collect(),
             located: LocatedPoints::new(mesh.n_faces()),
+            paths: Paths::default(),
         }
     }
 
@@ -181,6 +186,7 @@ impl Complex {
             self.turns[h] = (self.turns[h] + 4 - turns % 4) % 4;
             self.turns[twin] = (self.turns[twin] + turns) % 4;
         }
+        self.paths.turn_face(face, turns);
     }
 
     /// Turns the frame of the face across a halfedge so that both faces agree along it.

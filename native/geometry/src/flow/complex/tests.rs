@@ -142,3 +142,52 @@ fn an_identity_of_ids_is_kept_by_compacting() {
     let ids: IdMap<HalfedgeId, HalfedgeId> = complex.twins;
     assert_eq!(ids.len(), 324);
 }
+
+/// Lines of some edges each from random vertices on, through flat vertices only.
+fn random_lines(complex: &Complex, seed: u64) -> Vec<Vec<HalfedgeId>> {
+    let mut random = crate::random::Random::new(seed);
+    let mut lines = Vec::new();
+    for _ in 0..20 {
+        let mut h = HalfedgeId(random.below(complex.twins.len()) as u32);
+        let mut line = vec![h];
+        for _ in 0..random.below(12) {
+            if complex.indices[complex.target(h)] != 0 {
+                break;
+            }
+            // Never back, and as straight as it goes by counting.
+            let fan: Vec<HalfedgeId> = complex.fan(complex.target(h)).collect();
+            let back = fan.iter().position(|&e| e == complex.twins[h]).unwrap();
+            h = fan[(back + 1 + random.below(fan.len() - 1)) % fan.len()];
+            line.push(h);
+        }
+        lines.push(line);
+    }
+    lines
+}
+
+#[test]
+fn lines_keep_their_sums_while_flat_vertices_go() {
+    use crate::flow::cones::keep_cones;
+    use crate::progress::Progress;
+    for seed in 0..10 {
+        let mut complex = box_complex(6);
+        let lines = random_lines(&complex, seed);
+        complex.follow_lines(&lines);
+        let mut is_wanted: VertexMap<bool> = complex.outgoing.iter().map(|_| false).collect();
+        let mut before = Vec::new();
+        for line in complex.paths.lines() {
+            let [a, b] = complex.ends(line).unwrap();
+            is_wanted[a] = true;
+            is_wanted[b] = true;
+            before.push((complex.sum_along(line, &complex.start), [a, b]));
+        }
+        let cones = keep_cones(complex, &is_wanted, &Progress::none()).unwrap();
+        for (line, (sum, ends)) in cones.paths.lines().iter().zip(before) {
+            let after = cones.sum_along(line, &cones.start);
+            assert!(after.distance(sum) < 1e-9, "{sum} {after}");
+            if let Some(now) = cones.ends(line) {
+                assert_eq!(now.map(|v| cones.original[v.index()]), ends);
+            }
+        }
+    }
+}

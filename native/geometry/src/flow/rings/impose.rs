@@ -69,7 +69,7 @@ fn best_offer(
 }
 
 /// Drags the metric until the equation holds, at least cost; false and unchanged if it cannot be.
-fn impose_row(rounding: &mut Rounding, row: &[f64]) -> bool {
+pub fn impose_row(rounding: &mut Rounding, row: &[f64]) -> bool {
     let moved = rounding.covariance.times(row);
     let variance = dot(row, &moved);
     let mut equations: Equations = rounding.equations.clone();

@@ -19,7 +19,7 @@ use super::periods::{Part, real_row};
 use crate::mesh::HalfedgeId;
 
 pub use cylinders::cylinders;
-pub use impose::{Greed, impose};
+pub use impose::{Greed, impose, impose_row};
 pub use lattice::Lattice;
 pub use segments::{Segment, segments};
 

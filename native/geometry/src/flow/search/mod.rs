@@ -14,9 +14,12 @@ use thiserror::Error;
 
 use super::complex::Complex;
 use super::covariance::Dense;
+use super::creases;
 use super::drag::{SHORT, State};
 use super::grid::{self, Grid, NotReadable};
-use super::periods::{self, NotASphere, Periods};
+use super::periods::{self, NotASphere, Periods, dot};
+use super::rings::impose_row;
+use super::rounding::Rounding;
 use crate::progress::{Cancelled, Progress};
 
 pub use score::{Score, Weights};
@@ -124,12 +127,17 @@ pub fn quantise(
     })
 }
 
+/// A line is given up if to put it along an axis costs more energy than this.
+const DEAREST: f64 = 0.01;
+
 /// What all trials share.
 struct Problem<'a> {
-    /// The metric at its start.
-    start: State,
+    /// The metric at its start, dragged to where the equations of the lines hold.
+    start: Rounding,
     /// The wanted periods, scaled so that the wish has the wanted area.
     wish: Periods,
+    /// The equations of the lines that are kept.
+    lines: Vec<Vec<f64>>,
     /// The energy as a square form of periods.
     energy: Dense,
     /// Its inverse.
@@ -158,10 +166,21 @@ impl<'a> Problem<'a> {
         let n_quads = n_quads as f64;
         let scale = (n_quads / dragged.complex.area()).sqrt();
         let energy = Dense::energy(&dragged.complex);
+        let covariance = energy.inverse();
+        let wish = basis.wish.iter().map(|x| x * scale).collect();
+        let mut start = Rounding::new(start, wish, covariance.clone());
+        let mut lines = creases::rows(complex);
+        let dear = |start: &Rounding, row: &[f64]| {
+            let off = dot(row, &start.wish);
+            let variance = start.covariance.between(row, row);
+            off * off > DEAREST * n_quads * variance.max(1e-9)
+        };
+        lines.retain(|row| !dear(&start, row) && impose_row(&mut start, row));
         Ok(Self {
+            wish: start.wish.clone(),
             start,
-            wish: basis.wish.iter().map(|x| x * scale).collect(),
-            covariance: energy.inverse(),
+            lines,
+            covariance,
             energy,
             n_quads,
             settings,

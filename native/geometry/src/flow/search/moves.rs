@@ -42,7 +42,8 @@ impl Moves {
         kept.retain(|_| random.unit() >= given_up);
         let weight = |c: &Cylinder| c.width * c.period.length();
         kept.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
-        let rows: Vec<Vec<f64>> = kept.iter().map(|c| c.row(off_axis(c.period))).collect();
+        let rings = kept.iter().map(|c| c.row(off_axis(c.period)));
+        let rows: Vec<Vec<f64>> = problem.lines.iter().cloned().chain(rings).collect();
         let lattice = Lattice::keeping(&problem.energy, &problem.covariance, &rows);
         Self {
             rings: ring_moves(problem, state, &lattice, missed),

@@ -3,7 +3,6 @@
 use super::{Candidate, Problem, Weights};
 use crate::flow::drag::SHORT;
 use crate::flow::rings::{Cylinder, Greed, Reach, cylinders, impose};
-use crate::flow::rounding::Rounding;
 use crate::progress::{Cancelled, Progress};
 
 /// How much energy a whole mesh of loops is worth when rings are chosen.
@@ -61,7 +60,7 @@ pub(super) fn round_at_scales(problem: &Problem, progress: &Progress) -> Result<
 
 /// The cylinders of the wish, as near to it as the metric gets.
 fn pool(problem: &Problem) -> Vec<Cylinder> {
-    let mut wished = problem.start.clone();
+    let mut wished = problem.start.state.clone();
     wished.drag(&problem.wish, SHORT);
     let reach = Reach {
         longest: 1.6 * problem.n_quads.sqrt(),
@@ -99,8 +98,7 @@ impl Found {
         pool: &[Cylinder],
         attempt: Attempt,
     ) -> Option<Candidate> {
-        let wish = problem.wish.iter().map(|x| x * attempt.scale).collect();
-        let start = Rounding::new(problem.start.clone(), wish, problem.covariance.clone());
+        let start = problem.start.scaled(attempt.scale);
         let mut n_most = MOST_RINGS;
         loop {
             let mut rounding = start.clone();

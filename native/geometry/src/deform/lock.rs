@@ -1,0 +1,240 @@
+//! Vertices of flowing quads on sharp lines: led there, pinned, and moved along them.
+//!
+//! A vertex on a line has one freedom left, its arc length; vertices at the line's ends have none.
+//! Between rounds of relaxation each goes to where its neighbours want it along the line.
+
+use std::collections::BTreeSet;
+
+use glam::DVec3;
+
+use super::Flowing;
+use super::cover::Cover;
+use super::follow::{Stars, follow};
+use super::project::lift_towards;
+use super::sheet::Sheet;
+use crate::mesh::VertexId;
+use crate::progress::{Cancelled, Progress};
+
+/// Steps in which vertices walk to their lines, while the others make room.
+const N_STEPS: usize = 30;
+/// How far one goes in a step, in edges.
+const STRIDE: f64 = 0.35;
+/// A vertex is set onto its line from no farther away than this share of an edge.
+const NEAR: f64 = 0.1;
+/// Shares of a step that are tried.
+const SHARES: [f64; 3] = [1.0, 0.5, 0.2];
+/// Quality that setting a vertex onto its line may not spoil unless the face is worse already.
+const LEAST_QUALITY: f64 = 0.2;
+/// Quality that moving one along its line may not spoil.
+const GUARDED_QUALITY: f64 = 0.7;
+/// Share of its way along the line that a vertex goes at once.
+const DAMPING: f64 = 0.5;
+/// A vertex stays this share of the way to its neighbours on the line away from these.
+const ROOM: f64 = 0.4;
+
+/// Vertices along a sharp line of the surface.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Seam {
+    /// The vertices, each joined to the next; a closed seam ends with the one it begins with.
+    pub vertices: Vec<VertexId>,
+    /// The arc length of each.
+    pub at: Vec<f64>,
+    /// The corners of the line.
+    pub points: Vec<DVec3>,
+}
+
+/// The seams of a sheet while it is relaxed.
+pub(super) struct Seams {
+    tracks: Vec<Track>,
+}
+
+struct Track {
+    seam: Seam,
+    /// Which vertices stand on the line.
+    is_there: Vec<bool>,
+    /// Arc length from the line's start to each of its corners.
+    lengths: Vec<f64>,
+}
+
+impl Seams {
+    /// Leads vertices to their lines and pins those that arrive.
+    pub fn new(
+        sheet: &mut Sheet,
+        (flowing, cover): (Flowing<'_>, &mut Cover),
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
+        let tracks = flowing.seams.iter().cloned().map(Track::new).collect();
+        let mut seams = Self { tracks };
+        for v in seams.vertices().collect::<Vec<_>>() {
+            sheet.pin(v);
+        }
+        for step in 0..N_STEPS {
+            if seams.step(sheet) == 0 {
+                break;
+            }
+            let part = progress.part("", step as f64 / N_STEPS as f64, 1.0);
+            follow(sheet, (flowing, cover), 1, &part)?;
+        }
+        seams.pin(sheet);
+        Ok(seams)
+    }
+
+    /// Moves vertices along their lines to where their neighbours want them, and on towards the
+    /// lines those that are not there.
+    pub fn slide(&mut self, sheet: &mut Sheet, stars: &Stars) {
+        for track in &mut self.tracks {
+            track.slide(sheet, stars);
+        }
+        self.step(sheet);
+        self.pin(sheet);
+    }
+
+    /// How many vertices belong on lines, and how many are there.
+    pub fn counts(&self, sheet: &Sheet) -> [usize; 2] {
+        let vertices: BTreeSet<VertexId> = self.vertices().collect();
+        let n_there = vertices.iter().filter(|&&v| sheet.is_pinned(v)).count();
+        [vertices.len(), n_there]
+    }
+
+    /// Lets go of vertices at bad faces, so that these can be mended.
+    pub fn release_bad(&self, sheet: &mut Sheet) {
+        for v in self.vertices() {
+            if sheet.worst_quality(v, sheet.point(v)) < LEAST_QUALITY {
+                sheet.unpin(v);
+            }
+        }
+    }
+
+    /// Pins those vertices alone that are on their lines.
+    fn pin(&self, sheet: &mut Sheet) {
+        for v in self.vertices() {
+            sheet.unpin(v);
+        }
+        for track in &self.tracks {
+            for (&v, _) in track
+                .seam
+                .vertices
+                .iter()
+                .zip(&track.is_there)
+                .filter(|t| *t.1)
+            {
+                sheet.pin(v);
+            }
+        }
+    }
+
+    /// Brings vertices a step nearer to their lines; returns how many are still on the way.
+    fn step(&mut self, sheet: &mut Sheet) -> usize {
+        let edge = sheet.mean_edge();
+        let mut n_left = 0;
+        for track in &mut self.tracks {
+            for i in 0..track.n() {
+                if !track.is_there[i] {
+                    track.is_there[i] = track.approach(sheet, i, edge);
+                    n_left += usize::from(!track.is_there[i]);
+                }
+            }
+        }
+        n_left
+    }
+
+    fn vertices(&self) -> impl Iterator<Item = VertexId> + '_ {
+        self.tracks
+            .iter()
+            .flat_map(|t| t.seam.vertices.iter().copied())
+    }
+}
+
+impl Track {
+    fn new(seam: Seam) -> Self {
+        let mut lengths = vec![0.0];
+        for (i, pair) in seam.points.windows(2).enumerate() {
+            lengths.push(lengths[i] + pair[0].distance(pair[1]));
+        }
+        Self {
+            is_there: vec![false; seam.vertices.len()],
+            seam,
+            lengths,
+        }
+    }
+
+    fn n(&self) -> usize {
+        self.seam.vertices.len()
+    }
+
+    fn is_closed(&self) -> bool {
+        self.seam.vertices.first() == self.seam.vertices.last()
+    }
+
+    /// The point at an arc length; a closed line goes on at its beginning.
+    fn point(&self, at: f64) -> DVec3 {
+        let whole = self.lengths[self.lengths.len() - 1];
+        let at = if self.is_closed() {
+            at.rem_euclid(whole)
+        } else {
+            at
+        };
+        let after = self.lengths.partition_point(|&l| l <= at);
+        let i = after.clamp(1, self.lengths.len() - 1);
+        let step = self.lengths[i] - self.lengths[i - 1];
+        let share = ((at - self.lengths[i - 1]) / step.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        self.seam.points[i - 1].lerp(self.seam.points[i], share)
+    }
+
+    /// Takes a step towards the place on the line, or half of one, if nothing folds; near to it
+    /// the vertex is set there. Returns whether it is.
+    fn approach(&self, sheet: &mut Sheet, i: usize, edge: f64) -> bool {
+        let v = self.seam.vertices[i];
+        let goal = self.point(self.seam.at[i]);
+        let way = (goal - sheet.position(v)).clamp_length_max(STRIDE * edge);
+        for share in SHARES {
+            let there = sheet.walked(v, sheet.position(v) + way * share);
+            if sheet.try_move(v, there) {
+                break;
+            }
+        }
+        let is_near = sheet.position(v).distance(goal) <= NEAR * edge;
+        is_near && lift_towards(sheet, v, goal, LEAST_QUALITY) == Some(0)
+    }
+
+    fn slide(&mut self, sheet: &mut Sheet, stars: &Stars) {
+        let n = self.n() - 1;
+        let whole = self.lengths[self.lengths.len() - 1];
+        for i in usize::from(!self.is_closed())..n {
+            let v = self.seam.vertices[i];
+            if !self.is_there[i] {
+                continue;
+            }
+            let now = self.seam.at[i];
+            let before = if i == 0 {
+                self.seam.at[n - 1] - whole
+            } else {
+                self.seam.at[i - 1]
+            };
+            let ahead = self.seam.at[i + 1];
+            let gap = (ahead - now).min(now - before) * ROOM;
+            let tangent = (self.point(now + gap) - self.point(now - gap)).normalize_or_zero();
+            let star = stars.of(v);
+            let sum: DVec3 = star.iter().map(|&u| sheet.position(u)).sum();
+            let pull = (sum / star.len() as f64 - sheet.position(v)).dot(tangent);
+            let at = now + (DAMPING * pull).clamp(-gap.max(0.0), gap.max(0.0));
+            if self.move_to(sheet, v, at) {
+                self.seam.at[i] = at;
+                if i == 0 {
+                    self.seam.at[n] = at + whole;
+                }
+            }
+        }
+    }
+
+    /// Moves a vertex along the line unless that folds the sphere or spoils a face.
+    fn move_to(&self, sheet: &mut Sheet, v: VertexId, at: f64) -> bool {
+        let place = self.point(at);
+        let now = *sheet.point(v);
+        let mut there = sheet.walked(v, place);
+        there.position = place;
+        let before = sheet.badness(v, &now, GUARDED_QUALITY);
+        let after = sheet.badness(v, &there, GUARDED_QUALITY);
+        after <= before && sheet.try_move(v, there)
+    }
+}

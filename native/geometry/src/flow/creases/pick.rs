@@ -1,0 +1,100 @@
+//! Which lines are kept, and where they end.
+
+use super::chains;
+use crate::flow::field::OrientationField;
+use crate::mesh::{HalfedgeId, HalfedgeMap, TriangleMesh, VertexId};
+
+/// Lines shorter than this many edges of a quad are left alone: a chamfer, noise of a scan.
+const SHORTEST: f64 = 3.0;
+/// A line does not end nearer than this many edges to a singularity or the end of another line:
+/// in the result they lie at least one edge apart.
+const ROOM: f64 = 0.8;
+
+/// The least share of all sharp edges that lines of quads must cover.
+const CLEAR: f64 = 0.7;
+
+/// A line of sharp edges.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Line {
+    /// Its halfedges from one end to the other, each beginning where the one before stops.
+    pub halfedges: Vec<HalfedgeId>,
+    /// The first and the last vertex; one and the same if the line is closed.
+    pub ends: [VertexId; 2],
+}
+
+/// The lines of sharp edges that are long enough for quads of edge length `h`, longest first.
+///
+/// They end at corners and singularities; where an end is too near to another or to a singularity
+/// that is not on the line, the line ends before. O(n + lines · singularities).
+pub fn lines(
+    mesh: &TriangleMesh,
+    field: &OrientationField,
+    sharp: &HalfedgeMap<bool>,
+    h: f64,
+) -> Vec<Line> {
+    let mut all: Vec<(f64, Vec<HalfedgeId>)> = chains(mesh, field, sharp)
+        .into_iter()
+        .map(|line| (length(mesh, &line), line))
+        .filter(|(length, _)| *length >= SHORTEST * h)
+        .collect();
+    all.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let singular = mesh.vertex_ids().filter(|&v| field.indices[v] != 0);
+    let mut kept: Vec<VertexId> = singular.collect();
+    let mut lines = Vec::new();
+    for (_, line) in all {
+        let is_free = |v: VertexId| {
+            let is_apart = |u: &VertexId| mesh.position(*u).distance(mesh.position(v)) > ROOM * h;
+            kept.contains(&v) || kept.iter().all(is_apart)
+        };
+        let Some(halfedges) = with_free_ends(mesh, line, is_free) else {
+            continue;
+        };
+        if length(mesh, &halfedges) < SHORTEST * h {
+            continue;
+        }
+        let [first, last] = [halfedges[0], halfedges[halfedges.len() - 1]];
+        let ends = [mesh.origin(first), mesh.target(last)];
+        kept.extend(ends);
+        lines.push(Line { halfedges, ends });
+    }
+    lines
+}
+
+/// Whether enough of the sharp edges lie on the lines of so much length in all: else they are the
+/// facets of a coarse mesh or the noise of a scan, and quads do better without them.
+pub fn are_clear(mesh: &TriangleMesh, sharp: &HalfedgeMap<bool>, on_lines: f64) -> bool {
+    let all: Vec<HalfedgeId> = mesh.halfedge_ids().filter(|&h| sharp[h]).collect();
+    // Each edge counts twice there.
+    on_lines > 0.5 * CLEAR * length(mesh, &all)
+}
+
+impl Line {
+    /// How long it is.
+    pub fn length(&self, mesh: &TriangleMesh) -> f64 {
+        length(mesh, &self.halfedges)
+    }
+}
+
+fn length(mesh: &TriangleMesh, line: &[HalfedgeId]) -> f64 {
+    let of = |h: &HalfedgeId| {
+        let [a, b] = [mesh.origin(*h), mesh.target(*h)];
+        mesh.position(a).distance(mesh.position(b))
+    };
+    line.iter().map(of).sum()
+}
+
+/// A line without what lies before its first and after its last free vertex; a closed one is
+/// turned to begin at a free vertex.
+fn with_free_ends(
+    mesh: &TriangleMesh,
+    mut line: Vec<HalfedgeId>,
+    is_free: impl Fn(VertexId) -> bool,
+) -> Option<Vec<HalfedgeId>> {
+    let first = line.iter().position(|&h| is_free(mesh.origin(h)))?;
+    if mesh.origin(*line.first()?) == mesh.target(*line.last()?) {
+        line.rotate_left(first);
+        return Some(line);
+    }
+    let last = line.iter().rposition(|&h| is_free(mesh.target(h)))?;
+    (first <= last).then(|| line[first..=last].to_vec())
+}

@@ -1,0 +1,287 @@
+//! Lines in the grid: its edges that belong on a sharp line, and where along it.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+
+use super::Line;
+use crate::flow::complex::{Complex, Step};
+use crate::mesh::TriangleMesh;
+
+/// How far a line's span may be off an axis for its walk to arrive: rounding.
+const ON_AXIS: f64 = 1e-6;
+
+/// A seam farther than this many of its edges from its line is none: quads would be squeezed
+/// between the two.
+const FARTHEST: f64 = 2.2;
+/// How often vertices move along their line to where first positions have them.
+const N_ROUNDS: usize = 60;
+/// Share of the way there at once, while they go half of the way between their neighbours: small,
+/// so that distances change little from one to the next.
+const PULL: f64 = 0.1;
+/// Share of the distance between two of them that is kept in one round.
+const LEAST_GAP: f64 = 0.3;
+
+/// Vertices of the quads along a sharp line of the surface.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Seam {
+    /// The vertices, each joined to the next by an edge; a closed seam ends where it begins.
+    pub vertices: Vec<u32>,
+    /// The arc length at which each belongs. Where a seam is closed the line goes on at its
+    /// beginning.
+    pub at: Vec<f64>,
+    /// The corners of the line.
+    pub points: Vec<DVec3>,
+}
+
+/// The seam of every line that runs along an axis of a whole metric; it may touch singularities.
+///
+/// `lines` are those of `complex.paths` as they were on the mesh, `positions` first ones of the
+/// quads' vertices. Of the ways that arrive the nearest is taken. A vertex inside one seam is in no
+/// other.
+pub fn seams(
+    mesh: &TriangleMesh,
+    lines: &[Line],
+    complex: &Complex,
+    (quads, positions): (&[[u32; 4]], &[DVec3]),
+) -> Vec<Seam> {
+    let walker = Walker::new(quads, positions.len());
+    let mut is_taken = vec![false; positions.len()];
+    let mut seams = Vec::new();
+    for (line, path) in lines.iter().zip(complex.paths.lines()) {
+        let arcs = Arcs::new(mesh, line);
+        let walks = walker.along(complex, path).into_iter();
+        let laid = walks.map(|walk| arcs.lay(walk, positions));
+        let best = laid.reduce(|a, b| if b.0 < a.0 { b } else { a });
+        let Some((_, seam)) = best.filter(|(miss, seam)| seam.is_near(*miss)) else {
+            continue;
+        };
+        let inner = &seam.vertices[1..seam.vertices.len() - 1];
+        if inner.iter().any(|&v| is_taken[v as usize]) {
+            continue;
+        }
+        for &v in inner {
+            is_taken[v as usize] = true;
+        }
+        seams.push(seam);
+    }
+    seams
+}
+
+/// On which side of a walk a singularity on it leaves half a turn.
+#[derive(Clone, Copy)]
+enum Hand {
+    Left,
+    Right,
+}
+
+struct Walker {
+    /// The vertex after an edge in the quad on its left.
+    ahead: HashMap<[u32; 2], u32>,
+    valences: Vec<u8>,
+    outgoing: Vec<u32>,
+}
+
+impl Walker {
+    fn new(quads: &[[u32; 4]], n_vertices: usize) -> Self {
+        let mut walker = Self {
+            ahead: HashMap::with_capacity(4 * quads.len()),
+            valences: vec![0; n_vertices],
+            outgoing: vec![0; n_vertices],
+        };
+        for quad in quads {
+            for i in 0..4 {
+                let [a, b, c] = [0, 1, 2].map(|step| quad[(i + step) % 4]);
+                walker.ahead.insert([a, b], c);
+                walker.valences[a as usize] += 1;
+                walker.outgoing[a as usize] = b;
+            }
+        }
+        walker
+    }
+
+    /// All straight walks as long as a path and from its first end to its last.
+    fn along(&self, complex: &Complex, path: &[Step]) -> Vec<Vec<u32>> {
+        let Some([first, last]) = complex.ends(path).map(|ends| ends.map(|v| v.0)) else {
+            return Vec::new();
+        };
+        let span = complex.sum_along(path, &complex.start);
+        let n = span.length().round() as usize;
+        if span.abs().min_element() > ON_AXIS || n == 0 {
+            return Vec::new();
+        }
+        let ways = self.neighbours(first).into_iter();
+        let ways = ways.flat_map(|next| [Hand::Left, Hand::Right].map(|hand| (next, hand)));
+        let walks = ways.filter_map(|(next, hand)| self.straight([first, next], n, hand));
+        walks.filter(|walk| walk.last() == Some(&last)).collect()
+    }
+
+    fn neighbours(&self, v: u32) -> Vec<u32> {
+        let mut around = vec![self.outgoing[v as usize]];
+        for _ in 1..self.valences[v as usize] {
+            // From a neighbour to v: what comes next in the quad on the left is the next one.
+            let Some(&next) = self.ahead.get(&[around[around.len() - 1], v]) else {
+                break;
+            };
+            around.push(next);
+        }
+        around
+    }
+
+    /// So many edges straight on; at irregular vertices two quads are left on one hand.
+    fn straight(&self, [first, next]: [u32; 2], n: usize, hand: Hand) -> Option<Vec<u32>> {
+        let mut walk = vec![first, next];
+        while walk.len() <= n {
+            let [from, at] = [walk[walk.len() - 2], walk[walk.len() - 1]];
+            let n_turns = match hand {
+                Hand::Left => 2,
+                Hand::Right => self.valences[at as usize] - 2,
+            };
+            let mut to = from;
+            for _ in 0..n_turns {
+                to = *self.ahead.get(&[to, at])?;
+            }
+            walk.push(to);
+        }
+        Some(walk)
+    }
+}
+
+/// A line by its arc length.
+struct Arcs {
+    points: Vec<DVec3>,
+    lengths: Vec<f64>,
+    is_closed: bool,
+}
+
+impl Arcs {
+    fn new(mesh: &TriangleMesh, line: &Line) -> Self {
+        let mut points = vec![mesh.position(line.ends[0])];
+        points.extend(
+            line.halfedges
+                .iter()
+                .map(|&h| mesh.position(mesh.target(h))),
+        );
+        let mut lengths = vec![0.0];
+        for (i, pair) in points.windows(2).enumerate() {
+            lengths.push(lengths[i] + pair[0].distance(pair[1]));
+        }
+        Self {
+            points,
+            lengths,
+            is_closed: line.ends[0] == line.ends[1],
+        }
+    }
+
+    fn whole(&self) -> f64 {
+        self.lengths[self.lengths.len() - 1]
+    }
+
+    /// Lays a walk along the line, near to first positions; returns how far its vertices are from there, squared.
+    fn lay(&self, walk: Vec<u32>, positions: &[DVec3]) -> (f64, Seam) {
+        let step = self.whole() / (walk.len() - 1) as f64;
+        let mut at: Vec<f64> = (0..walk.len()).map(|i| i as f64 * step).collect();
+        if self.is_closed {
+            // A closed line has no fixed vertex: the whole of it is shifted to where it lies.
+            let shifts = walk.iter().zip(&at).map(|(&v, &at)| {
+                let off = self.nearest(positions[v as usize]) - at;
+                let half = self.whole() / 2.0;
+                (off + half).rem_euclid(self.whole()) - half
+            });
+            let shift = shifts.sum::<f64>() / walk.len() as f64;
+            for at in &mut at {
+                *at += shift;
+            }
+        }
+        for _ in 0..N_ROUNDS {
+            self.settle(&walk, &mut at, positions);
+        }
+        let distances = (walk.iter().zip(&at))
+            .map(|(&v, &at)| positions[v as usize].distance_squared(self.point(at)));
+        let miss = distances.sum::<f64>() / walk.len() as f64;
+        let seam = Seam {
+            vertices: walk,
+            at,
+            points: self.points.clone(),
+        };
+        (miss, seam)
+    }
+
+    /// Moves each vertex that is not at an end of an open line along it towards its position.
+    fn settle(&self, walk: &[u32], at: &mut [f64], positions: &[DVec3]) {
+        let n = walk.len() - 1;
+        let step = self.whole() / n as f64;
+        for i in usize::from(!self.is_closed)..n {
+            let before = if i == 0 {
+                at[n - 1] - self.whole()
+            } else {
+                at[i - 1]
+            };
+            let now = at[i];
+            let tangent = self.point(now + 0.5 * step) - self.point(now - 0.5 * step);
+            let miss = positions[walk[i] as usize] - self.point(now);
+            let pull = miss.dot(tangent.normalize_or_zero());
+            let [low, high] = [before, at[i + 1]].map(|x| x + (now - x) * LEAST_GAP);
+            let even = 0.5 * (before + at[i + 1]) - now;
+            at[i] = (now + PULL * pull + 0.5 * even).clamp(low.min(high), high.max(low));
+            if i == 0 {
+                at[n] = at[0] + self.whole();
+            }
+        }
+    }
+
+    /// The arc length of the corner nearest to a position.
+    fn nearest(&self, position: DVec3) -> f64 {
+        let distance = |p: &DVec3| p.distance_squared(position);
+        let corners = self.points.iter().zip(&self.lengths);
+        let nearest = corners.min_by(|a, b| distance(a.0).total_cmp(&distance(b.0)));
+        nearest.map_or(0.0, |(_, &length)| length)
+    }
+
+    fn point(&self, at: f64) -> DVec3 {
+        let at = if self.is_closed {
+            at.rem_euclid(self.whole())
+        } else {
+            at
+        };
+        let after = self.lengths.partition_point(|&l| l <= at);
+        let i = after.clamp(1, self.lengths.len() - 1);
+        let step = self.lengths[i] - self.lengths[i - 1];
+        let share = ((at - self.lengths[i - 1]) / step.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        self.points[i - 1].lerp(self.points[i], share)
+    }
+}
+
+impl Seam {
+    /// Whether a mean squared miss is small beside its edges.
+    fn is_near(&self, miss: f64) -> bool {
+        let edge = self.length() / (self.vertices.len() - 1) as f64;
+        miss < (FARTHEST * edge).powi(2)
+    }
+
+    /// The length of the line.
+    pub fn length(&self) -> f64 {
+        let steps = self.points.windows(2).map(|pair| pair[0].distance(pair[1]));
+        steps.sum()
+    }
+
+    /// The vertices, each with the place on the line where it belongs.
+    pub fn goals(&self) -> Vec<(u32, DVec3)> {
+        let mut lengths = vec![0.0];
+        for (i, pair) in self.points.windows(2).enumerate() {
+            lengths.push(lengths[i] + pair[0].distance(pair[1]));
+        }
+        let arcs = Arcs {
+            points: self.points.clone(),
+            lengths,
+            is_closed: self.vertices.first() == self.vertices.last(),
+        };
+        let mut goals: Vec<(u32, DVec3)> = (self.vertices.iter().zip(&self.at))
+            .map(|(&v, &at)| (v, arcs.point(at)))
+            .collect();
+        if arcs.is_closed {
+            goals.pop();
+        }
+        goals
+    }
+}

@@ -1,0 +1,52 @@
+//! Lines of boxes and spheres.
+
+use super::*;
+use crate::flow::field::{Settings, orient};
+use crate::measure::total_area;
+use crate::mesh::FaceMap;
+use crate::progress::Progress;
+use crate::shapes;
+
+const SHARP: f64 = 0.7;
+
+fn field_of(mesh: &TriangleMesh) -> OrientationField {
+    orient(mesh, &Settings::default(), &Progress::none()).unwrap()
+}
+
+#[test]
+fn a_box_has_twelve_lines_between_its_corners() {
+    let mesh = shapes::cuboid(10);
+    let sharp = sharp_edges(&mesh, SHARP);
+    let corners = corners(&mesh, &sharp);
+    assert_eq!(corners.iter().filter(|&&is| is).count(), 8);
+    let h = (total_area(&mesh) / 400.0).sqrt();
+    let mut field = field_of(&mesh);
+    let sizes = FaceMap::filled(mesh.n_faces(), h);
+    attract(&mesh, &mut field, &sharp, &sizes);
+    for v in mesh.vertex_ids() {
+        assert_eq!(field.indices[v], i32::from(corners[v]));
+    }
+    let lines = lines(&mesh, &field, &sharp, h);
+    assert_eq!(lines.len(), 12);
+    assert!(lines.iter().all(|line| line.halfedges.len() == 10));
+}
+
+#[test]
+fn closed_lines_come_once_and_round_shapes_have_none() {
+    let mesh = shapes::sphere(8);
+    let field = field_of(&mesh);
+    assert!(lines(&mesh, &field, &sharp_edges(&mesh, SHARP), 0.2).is_empty());
+    let on_equator = |v| mesh.position(v).z.abs() < 1e-9;
+    let equator = |h| on_equator(mesh.origin(h)) && on_equator(mesh.target(h));
+    let sharp = mesh.halfedge_ids().map(equator).collect();
+    let lines = chains(&mesh, &field, &sharp);
+    let singular = |v: &VertexId| on_equator(*v) && field.indices[*v] != 0;
+    let n_singular = mesh.vertex_ids().filter(singular).count();
+    assert_eq!(lines.len(), n_singular.max(1));
+    assert_eq!(lines.iter().map(Vec::len).sum::<usize>(), 32);
+    for line in &lines {
+        for pair in line.windows(2) {
+            assert_eq!(mesh.target(pair[0]), mesh.origin(pair[1]));
+        }
+    }
+}
