@@ -72,7 +72,8 @@ impl Seams {
             if seams.step(sheet) == 0 {
                 break;
             }
-            let part = progress.part("", step as f64 / N_STEPS as f64, 1.0);
+            let [from, to] = [step, step + 1].map(|s| s as f64 / N_STEPS as f64);
+            let part = progress.part("", from, to);
             follow(sheet, (flowing, cover), 1, &part)?;
         }
         seams.pin(sheet);

@@ -270,8 +270,9 @@ pub fn deform_flow(
     let n_rounds = settings.n_flow_relaxations;
     let stars = follow::Stars::new(&sheet);
     for round in (0..n_rounds).step_by(ROUNDS_PER_SLIDE) {
-        let part = progress.part("", 0.1 + 0.5 * round as f64 / n_rounds as f64, 0.6);
         let n = ROUNDS_PER_SLIDE.min(n_rounds - round);
+        let [from, to] = [round, round + n].map(|r| 0.1 + 0.5 * r as f64 / n_rounds as f64);
+        let part = progress.part("", from, to);
         report.n_stuck = follow::follow(&mut sheet, (flowing, &mut cover), n, &part)?;
         seams.slide(&mut sheet, &stars);
     }
