@@ -24,6 +24,12 @@ _PRIMITIVES = (
 _PREDICTORS = (("SOLVER", "Solver", "Finds the map to the sphere by optimisation"),)
 
 
+def _share(name: str, description: str) -> Any:  # noqa: ANN401 - a property that is made later
+    return FloatProperty(
+        name=name, description=description, default=0.5, min=0.0, max=1.0, subtype="FACTOR"
+    )
+
+
 class Settings:
     """The properties themselves; names, defaults and ranges are those of the core."""
 
@@ -42,21 +48,11 @@ class Settings:
         description="The sphere that is deformed into the mesh",
         items=_PRIMITIVES,
     )
-    follow_shape: FloatProperty(
-        name="Follow Shape",
-        description="Flowing quads: 0 makes smooth loops, 1 lays edges along the curvature",
-        default=0.5,
-        min=0.0,
-        max=1.0,
-        subtype="FACTOR",
+    follow_shape: _share(
+        "Follow Shape", "Flowing quads: 0 makes smooth loops, 1 lays edges along the curvature"
     )
-    adaptivity: FloatProperty(
-        name="Adaptivity",
-        description="Flowing quads: 0 makes all of one size, 1 much smaller ones where it bends",
-        default=0.5,
-        min=0.0,
-        max=1.0,
-        subtype="FACTOR",
+    adaptivity: _share(
+        "Adaptivity", "Flowing quads: 0 makes all of one size, 1 much smaller ones where it bends"
     )
     predictor: EnumProperty(
         name="Predictor",

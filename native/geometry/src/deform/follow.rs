@@ -1,7 +1,5 @@
 //! Relaxing quads that flow: edges turn along a field of crosses and get one length.
 
-use std::f64::consts::TAU;
-
 use glam::DVec3;
 
 use super::Flowing;
@@ -18,9 +16,7 @@ const DAMPING: f64 = 0.7;
 /// Share of its last way that a vertex goes on for. Without it lengths even out too slowly over
 /// long ways; from 0.7 on vertices swing.
 const MOMENTUM: f64 = 0.6;
-/// Rounds in which vertices of inverted faces may move without guard: it would keep knots closed.
-const N_LOOSE: usize = 30;
-/// Shares of the way to the middle of its neighbours that such a vertex tries.
+/// Shares of the way to the middle of its neighbours that a vertex of an inverted face tries.
 const LOOSENINGS: [f64; 2] = [1.0, 0.3];
 /// Quality that no move may spoil: below it a move must make the worst face at the vertex better.
 const GUARDED_QUALITY: f64 = 0.7;
@@ -28,17 +24,13 @@ const GUARDED_QUALITY: f64 = 0.7;
 const BAD_QUALITY: f64 = 0.45;
 /// How far away these places are, in mean edges.
 const REACHES: [f64; 4] = [0.4, 0.2, 0.1, 0.03];
-/// And in how many directions.
-const N_WAYS: u32 = 8;
 
-/// How many rounds what faces cover stays as it was measured.
-const ROUNDS_PER_COVER: usize = 4;
 /// A face that covers this many times its own area begins to count as lying over a tip, and counts
 /// fully at twice that; below 1.5 every bent face would shrink, and edges become uneven.
 const LEAST_EXCESS: f64 = 2.0;
 /// How much of a step at most goes to the middle of what a face hides.
 const CLIMB: f64 = 0.5;
-/// Shares of its way that a vertex that is led tries to go.
+/// Shares of its way that a vertex that walks tries to go.
 const LEADS: [f64; 3] = [1.0, 0.5, 0.2];
 
 /// The neighbours of every vertex over edges.
@@ -72,23 +64,21 @@ impl Stars {
 /// Moves every vertex that is not pinned, round by round, to the mean of where the edges to its
 /// neighbours want it: along the nearest arm of the cross, at the wanted length.
 ///
-/// `crosses` holds one arm of the cross of every face of the map. Moves go along the surface; those
-/// that fold the sphere or spoil a face are halved once, then refused. Returns how many were.
+/// Moves go along the surface; those that fold the sphere or spoil a face are halved once, then
+/// refused. What faces cover is measured once, before the first of a few rounds. Returns how many
+/// moves of the last round were refused.
 pub(super) fn follow(
     sheet: &mut Sheet,
     (flowing, cover): (Flowing<'_>, &mut Cover),
-    n_rounds: usize,
+    (stars, n_rounds): (&Stars, usize),
     progress: &Progress,
 ) -> Result<usize, Cancelled> {
-    let stars = Stars::new(sheet);
+    cover.update(sheet);
     let mut n_refused = 0;
     let mut ways = VertexMap::filled(sheet.n_vertices(), DVec3::ZERO);
     for round in 0..n_rounds {
         progress.at(round as f64 / n_rounds as f64)?;
-        let unit = unit(sheet, flowing.sizes, &stars);
-        if round % ROUNDS_PER_COVER == 0 {
-            cover.update(sheet);
-        }
+        let unit = unit(sheet, flowing.sizes, stars);
         n_refused = 0;
         for v in sheet.vertex_ids() {
             if v.0 % 4096 == 0 {
@@ -98,7 +88,7 @@ pub(super) fn follow(
                 continue;
             }
             let star = stars.of(v);
-            if round < N_LOOSE && loosen(sheet, v, star) {
+            if loosen(sheet, v, star) {
                 continue;
             }
             let step = wish(sheet, flowing, (v, star), unit);
@@ -115,7 +105,7 @@ pub(super) fn follow(
 }
 
 /// Moves a vertex of an inverted face towards the middle of its neighbours, guarded by nothing but
-/// the folds on the sphere; false where there is no such face or no way.
+/// the folds on the sphere: more would keep knots closed. False where there is no such face or no way.
 fn loosen(sheet: &mut Sheet, vertex: VertexId, star: &[VertexId]) -> bool {
     let now = *sheet.point(vertex);
     if sheet.worst_quality(vertex, &now) >= 0.0 {
@@ -145,13 +135,10 @@ fn mend(sheet: &mut Sheet, vertex: VertexId, length: f64) -> bool {
     if sheet.worst_quality(vertex, &now) >= BAD_QUALITY {
         return false;
     }
-    let (x, y) = now.normal.any_orthonormal_pair();
-    let places = REACHES.iter().flat_map(|reach| {
-        (0..N_WAYS).map(move |i| {
-            let (sin, cos) = (f64::from(i) * TAU / f64::from(N_WAYS)).sin_cos();
-            (x * cos + y * sin) * (reach * length)
-        })
-    });
+    let ways = now.ways();
+    let places = REACHES
+        .iter()
+        .flat_map(|reach| ways.map(|way| way * (reach * length)));
     let mut best = (sheet.badness(vertex, &now, GUARDED_QUALITY), now);
     for step in places {
         let there = sheet.walked(vertex, now.position + step);
@@ -173,16 +160,20 @@ pub(super) fn lead(
     for round in 0..n_rounds {
         progress.at(round as f64 / n_rounds as f64)?;
         for (v, &wanted) in sheet.vertex_ids().zip(wanted) {
-            let way = wanted - sheet.position(v);
-            for share in LEADS {
-                let there = sheet.walked(v, sheet.position(v) + way * share);
-                if sheet.try_move(v, there) {
-                    break;
-                }
-            }
+            walk(sheet, v, wanted - sheet.position(v));
         }
     }
     Ok(())
+}
+
+/// Moves a vertex along the surface by a step or a share of it, if nothing folds on the sphere.
+pub(super) fn walk(sheet: &mut Sheet, vertex: VertexId, step: DVec3) {
+    for share in LEADS {
+        let there = sheet.walked(vertex, sheet.position(vertex) + step * share);
+        if sheet.try_move(vertex, there) {
+            break;
+        }
+    }
 }
 
 fn along(step: DVec3, at: &Point) -> DVec3 {

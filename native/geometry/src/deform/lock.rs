@@ -9,9 +9,10 @@ use glam::DVec3;
 
 use super::Flowing;
 use super::cover::Cover;
-use super::follow::{Stars, follow};
+use super::follow::{Stars, follow, walk};
 use super::project::lift_towards;
 use super::sheet::Sheet;
+use crate::measure::Seam;
 use crate::mesh::VertexId;
 use crate::progress::{Cancelled, Progress};
 
@@ -21,8 +22,6 @@ const N_STEPS: usize = 30;
 const STRIDE: f64 = 0.35;
 /// A vertex is set onto its line from no farther away than this share of an edge.
 const NEAR: f64 = 0.1;
-/// Shares of a step that are tried.
-const SHARES: [f64; 3] = [1.0, 0.5, 0.2];
 /// Quality that setting a vertex onto its line may not spoil unless the face is worse already.
 const LEAST_QUALITY: f64 = 0.2;
 /// Quality that moving one along its line may not spoil.
@@ -31,17 +30,6 @@ const GUARDED_QUALITY: f64 = 0.7;
 const DAMPING: f64 = 0.5;
 /// A vertex stays this share of the way to its neighbours on the line away from these.
 const ROOM: f64 = 0.4;
-
-/// Vertices along a sharp line of the surface.
-#[derive(Clone, PartialEq, Debug)]
-pub struct Seam {
-    /// The vertices, each joined to the next; a closed seam ends with the one it begins with.
-    pub vertices: Vec<VertexId>,
-    /// The arc length of each.
-    pub at: Vec<f64>,
-    /// The corners of the line.
-    pub points: Vec<DVec3>,
-}
 
 /// The seams of a sheet while it is relaxed.
 pub(super) struct Seams {
@@ -52,8 +40,6 @@ struct Track {
     seam: Seam,
     /// Which vertices stand on the line.
     is_there: Vec<bool>,
-    /// Arc length from the line's start to each of its corners.
-    lengths: Vec<f64>,
 }
 
 impl Seams {
@@ -61,6 +47,7 @@ impl Seams {
     pub fn new(
         sheet: &mut Sheet,
         (flowing, cover): (Flowing<'_>, &mut Cover),
+        stars: &Stars,
         progress: &Progress,
     ) -> Result<Self, Cancelled> {
         let tracks = flowing.seams.iter().cloned().map(Track::new).collect();
@@ -74,7 +61,7 @@ impl Seams {
             }
             let [from, to] = [step, step + 1].map(|s| s as f64 / N_STEPS as f64);
             let part = progress.part("", from, to);
-            follow(sheet, (flowing, cover), 1, &part)?;
+            follow(sheet, (flowing, cover), (stars, 1), &part)?;
         }
         seams.pin(sheet);
         Ok(seams)
@@ -112,13 +99,8 @@ impl Seams {
             sheet.unpin(v);
         }
         for track in &self.tracks {
-            for (&v, _) in track
-                .seam
-                .vertices
-                .iter()
-                .zip(&track.is_there)
-                .filter(|t| *t.1)
-            {
+            let vertices = track.seam.vertices.iter().zip(&track.is_there);
+            for (&v, _) in vertices.filter(|(_, is_there)| **is_there) {
                 sheet.pin(v);
             }
         }
@@ -148,14 +130,9 @@ impl Seams {
 
 impl Track {
     fn new(seam: Seam) -> Self {
-        let mut lengths = vec![0.0];
-        for (i, pair) in seam.points.windows(2).enumerate() {
-            lengths.push(lengths[i] + pair[0].distance(pair[1]));
-        }
         Self {
             is_there: vec![false; seam.vertices.len()],
             seam,
-            lengths,
         }
     }
 
@@ -163,45 +140,21 @@ impl Track {
         self.seam.vertices.len()
     }
 
-    fn is_closed(&self) -> bool {
-        self.seam.vertices.first() == self.seam.vertices.last()
-    }
-
-    /// The point at an arc length; a closed line goes on at its beginning.
-    fn point(&self, at: f64) -> DVec3 {
-        let whole = self.lengths[self.lengths.len() - 1];
-        let at = if self.is_closed() {
-            at.rem_euclid(whole)
-        } else {
-            at
-        };
-        let after = self.lengths.partition_point(|&l| l <= at);
-        let i = after.clamp(1, self.lengths.len() - 1);
-        let step = self.lengths[i] - self.lengths[i - 1];
-        let share = ((at - self.lengths[i - 1]) / step.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        self.seam.points[i - 1].lerp(self.seam.points[i], share)
-    }
-
     /// Takes a step towards the place on the line, or half of one, if nothing folds; near to it
     /// the vertex is set there. Returns whether it is.
     fn approach(&self, sheet: &mut Sheet, i: usize, edge: f64) -> bool {
         let v = self.seam.vertices[i];
-        let goal = self.point(self.seam.at[i]);
+        let goal = self.seam.line.point(self.seam.at[i]);
         let way = (goal - sheet.position(v)).clamp_length_max(STRIDE * edge);
-        for share in SHARES {
-            let there = sheet.walked(v, sheet.position(v) + way * share);
-            if sheet.try_move(v, there) {
-                break;
-            }
-        }
+        walk(sheet, v, way);
         let is_near = sheet.position(v).distance(goal) <= NEAR * edge;
         is_near && lift_towards(sheet, v, goal, LEAST_QUALITY) == Some(0)
     }
 
     fn slide(&mut self, sheet: &mut Sheet, stars: &Stars) {
         let n = self.n() - 1;
-        let whole = self.lengths[self.lengths.len() - 1];
-        for i in usize::from(!self.is_closed())..n {
+        let whole = self.seam.line.length();
+        for i in usize::from(!self.seam.line.is_closed())..n {
             let v = self.seam.vertices[i];
             if !self.is_there[i] {
                 continue;
@@ -214,7 +167,8 @@ impl Track {
             };
             let ahead = self.seam.at[i + 1];
             let gap = (ahead - now).min(now - before) * ROOM;
-            let tangent = (self.point(now + gap) - self.point(now - gap)).normalize_or_zero();
+            let [back, on] = [now - gap, now + gap].map(|at| self.seam.line.point(at));
+            let tangent = (on - back).normalize_or_zero();
             let star = stars.of(v);
             let sum: DVec3 = star.iter().map(|&u| sheet.position(u)).sum();
             let pull = (sum / star.len() as f64 - sheet.position(v)).dot(tangent);
@@ -230,7 +184,7 @@ impl Track {
 
     /// Moves a vertex along the line unless that folds the sphere or spoils a face.
     fn move_to(&self, sheet: &mut Sheet, v: VertexId, at: f64) -> bool {
-        let place = self.point(at);
+        let place = self.seam.line.point(at);
         let now = *sheet.point(v);
         let mut there = sheet.walked(v, place);
         there.position = place;

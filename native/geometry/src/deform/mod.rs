@@ -35,12 +35,11 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::measure::vertex_normals;
+use crate::measure::{Seam, vertex_normals};
 use crate::mesh::{FaceId, FaceMap, PolygonMesh};
 use crate::progress::{Cancelled, Progress};
 use crate::sphere_map::{NotACover, SphereMap, check_cover};
 use cover::Cover;
-pub use lock::Seam;
 use lock::Seams;
 use sheet::Sheet;
 pub use straddle::Anchor;
@@ -262,18 +261,19 @@ pub fn deform_flow(
         &progress.part("", 0.0, 0.05),
     )?;
     let mut cover = Cover::new(map, &sheet);
+    let stars = follow::Stars::new(&sheet);
     let mut seams = Seams::new(
         &mut sheet,
         (flowing, &mut cover),
+        &stars,
         &progress.part("", 0.05, 0.1),
     )?;
     let n_rounds = settings.n_flow_relaxations;
-    let stars = follow::Stars::new(&sheet);
     for round in (0..n_rounds).step_by(ROUNDS_PER_SLIDE) {
         let n = ROUNDS_PER_SLIDE.min(n_rounds - round);
         let [from, to] = [round, round + n].map(|r| 0.1 + 0.5 * r as f64 / n_rounds as f64);
         let part = progress.part("", from, to);
-        report.n_stuck = follow::follow(&mut sheet, (flowing, &mut cover), n, &part)?;
+        report.n_stuck = follow::follow(&mut sheet, (flowing, &mut cover), (&stars, n), &part)?;
         seams.slide(&mut sheet, &stars);
     }
     seams.release_bad(&mut sheet);

@@ -10,6 +10,7 @@ use super::project::lift_towards;
 use super::sheet::Sheet;
 use super::straddle::triangles;
 use super::target::Target;
+use crate::measure::area_vector;
 use crate::mesh::{FaceId, Id, VertexId, VertexMap};
 use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
@@ -95,7 +96,7 @@ fn pulls(
         .iter()
         .map(|t| t.map(|v| sheet.position(v)))
         .collect();
-    let normal = |[a, b, c]: &[DVec3; 3]| (b - a).cross(c - a).normalize_or_zero();
+    let normal = |&triangle: &[DVec3; 3]| area_vector(triangle).normalize_or_zero();
     let normals: Vec<DVec3> = flat.iter().map(normal).collect();
     let bvh = Bvh::build(&flat, progress)?;
     let pull = |site: &Site| {

@@ -1,12 +1,14 @@
 //! The moving mesh: faces whose vertices live on the surface and on the sphere at once.
 
+use std::array;
 use std::collections::HashSet;
+use std::f64::consts::TAU;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::mesh::{FaceId, FaceMap, PolygonMesh, VertexId, VertexMap};
-use crate::sphere_map::{SphereMap, SurfacePoint, is_positive, walk_along};
+use crate::sphere_map::{SphereMap, SurfacePoint, is_unfolded, walk_along};
 
 /// Cosine between a quad's own normal and the surface's below which the quad counts as turned over.
 const LEAST_AGREEMENT: f64 = 0.2;
@@ -52,6 +54,17 @@ pub(super) struct Point {
     pub normal: DVec3,
     pub sphere: DVec3,
     pub place: SurfacePoint,
+}
+
+impl Point {
+    /// Eight unit vectors along the surface, an eighth of a turn apart.
+    pub fn ways(&self) -> [DVec3; 8] {
+        let (x, y) = self.normal.any_orthonormal_pair();
+        array::from_fn(|i| {
+            let (sin, cos) = (i as f64 * TAU / 8.0).sin_cos();
+            x * cos + y * sin
+        })
+    }
 }
 
 /// A primitive that is being deformed. Its faces always cover the sphere once: every move and flip
@@ -225,7 +238,7 @@ impl<'a> Sheet<'a> {
         };
         self.rings[vertex]
             .iter()
-            .all(|&face| is_unfolded(&self.faces[face], at))
+            .all(|&face| is_unfolded(self.faces[face].corners(), at))
     }
 
     /// The worst quality of the faces at a vertex if it were at `to`.
@@ -259,7 +272,7 @@ impl<'a> Sheet<'a> {
 
     /// Whether a face that is not there yet would be positive on the sphere.
     pub fn is_unfolded(&self, corners: &[VertexId]) -> bool {
-        is_unfolded(&Face::new(corners), |v| self.points[v].sphere)
+        is_unfolded(corners, |v| self.points[v].sphere)
     }
 
     /// Replaces two triangles by the two over the other diagonal: `a b` becomes `c d`, where c
@@ -284,15 +297,6 @@ fn point_at(map: &SphereMap, normals: &VertexMap<DVec3>, place: SurfacePoint) ->
         sphere: map.sphere_position(place),
         place,
     }
-}
-
-/// Whether a spherical face is one positive triangle, or two over one of its diagonals.
-fn is_unfolded(face: &Face, at: impl Fn(VertexId) -> DVec3) -> bool {
-    let [a, b, c, d] = face.corners.map(at);
-    if face.n == 3 {
-        return is_positive(a, b, c);
-    }
-    (is_positive(a, b, c) && is_positive(a, c, d)) || (is_positive(a, b, d) && is_positive(b, c, d))
 }
 
 /// How near a face is to a regular polygon seen along the surface's normal: 1 for a regular

@@ -4,8 +4,6 @@
 //! all good. Near it there is: a vertex of a bad face goes to the best of some places around it,
 //! off the surface too, where it pays for the distance. Sphere points stay, so nothing folds there.
 
-use std::f64::consts::TAU;
-
 use glam::DVec3;
 
 use super::sheet::{Point, Sheet};
@@ -18,8 +16,6 @@ const BAD: f64 = 0.15;
 const ENOUGH: f64 = 0.3;
 /// How far away the places are that a vertex tries, in mean edges.
 const REACHES: [f64; 5] = [0.4, 0.2, 0.1, 0.05, 0.02];
-/// And in how many directions along the surface.
-const N_WAYS: u32 = 8;
 /// Rounds over the vertices of bad faces; most are open after five.
 const N_ROUNDS: usize = 40;
 /// What a vertex a mean edge away from where it was costs, against 0.09 for a face without area.
@@ -81,12 +77,8 @@ fn open(sheet: &mut Sheet, v: VertexId, edge: f64, start: DVec3) -> bool {
         let way = position.distance_squared(start) / (edge * edge);
         sheet.badness(v, &there, ENOUGH) + COST * way
     };
-    let (x, y) = now.normal.any_orthonormal_pair();
-    let along = (0..N_WAYS).map(|i| {
-        let (sin, cos) = (f64::from(i) * TAU / f64::from(N_WAYS)).sin_cos();
-        x * cos + y * sin
-    });
-    let ways: Vec<DVec3> = along.chain([now.normal, -now.normal]).collect();
+    let ways = now.ways().into_iter().chain([now.normal, -now.normal]);
+    let ways: Vec<DVec3> = ways.collect();
     let before = cost(now.position);
     let mut best = (before, now.position);
     for reach in REACHES {

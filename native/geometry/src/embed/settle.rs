@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::mesh::{FaceId, PolygonMesh, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
-use crate::sphere_map::is_positive;
+use crate::sphere_map::is_unfolded;
 
 /// Rounds over all vertices that are not where they were proposed.
 const N_ROUNDS: usize = 30;
@@ -73,23 +73,11 @@ fn approach(
         };
         if ring
             .iter()
-            .all(|&face| is_unfolded(mesh.face(face), sphere))
+            .all(|&face| is_unfolded(mesh.face(face), |v| sphere[v]))
         {
             return true;
         }
     }
     sphere[v] = from;
     false
-}
-
-/// Whether a face is one positive spherical triangle, or two over one of its diagonals.
-fn is_unfolded(face: &[VertexId], sphere: &VertexMap<DVec3>) -> bool {
-    match *face {
-        [a, b, c] => is_positive(sphere[a], sphere[b], sphere[c]),
-        [a, b, c, d] => {
-            let positive = |a, b, c| is_positive(sphere[a], sphere[b], sphere[c]);
-            (positive(a, b, c) && positive(a, c, d)) || (positive(a, b, d) && positive(b, c, d))
-        }
-        _ => false,
-    }
 }

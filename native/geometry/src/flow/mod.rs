@@ -30,5 +30,4 @@ mod stars;
 pub mod strips;
 pub mod wish;
 
-pub use creases::Seam;
 pub use quads::{Error, Flow, Report, Settings, flow};

@@ -9,7 +9,7 @@ use thiserror::Error;
 
 use super::cones::keep_cones;
 use super::conformal::{FlattenError, flatten};
-use super::creases::{self, Line, Seam};
+use super::creases::{self, Line};
 use super::field::{self, FieldError, OrientationField};
 use super::grid::Grid;
 use super::place::{PlaceError, Placed, place};
@@ -17,7 +17,7 @@ use super::search::{self, QuantiseError, Quantised, Score, quantise};
 use super::singularities::tidy;
 use super::sizes::{self, SizesError};
 use super::wish::{WishError, wish};
-use crate::measure::total_area;
+use crate::measure::{Seam, total_area};
 use crate::mesh::{FaceMap, HalfedgeMap, PolygonMesh, PolygonMeshError, TriangleMesh, VertexMap};
 use crate::progress::{Cancelled, Progress};
 use crate::sphere_map::SphereMap;
@@ -192,7 +192,7 @@ pub fn flow(map: &SphereMap, settings: &Settings, progress: &Progress) -> Result
             Err(Error::Quantise(_) | Error::Doubled { .. } | Error::Count { .. }) => None,
             Err(error) => return Err(error),
         };
-        let on_seams = |laid: &Laid| laid.seams.iter().map(Seam::length).sum();
+        let on_seams = |laid: &Laid| laid.seams.iter().map(|seam| seam.line.length()).sum();
         found = found.filter(|laid| creases::are_clear(mesh, &sharp, on_seams(laid)));
     }
     let laid = match found {
@@ -262,7 +262,7 @@ fn lay(
     let laid = (&grid.quads[..], &placed.positions[..]);
     let seams = creases::seams(map.mesh(), lines, &whole.complex, laid);
     if !seams.is_empty() {
-        let goals: BTreeMap<u32, DVec3> = seams.iter().flat_map(Seam::goals).collect();
+        let goals: BTreeMap<u32, DVec3> = seams.iter().flat_map(creases::goals).collect();
         let goals: Vec<_> = goals.into_iter().collect();
         placed = place(map, quads, &grid.cells, &goals, progress)?;
     }

@@ -6,6 +6,7 @@
 mod curvature;
 mod groups;
 mod polygon_edges;
+mod polyline;
 mod topology;
 
 use glam::DVec3;
@@ -15,6 +16,7 @@ use crate::mesh::{FaceId, FaceMap, HalfedgeId, TriangleMesh, VertexMap};
 pub use curvature::{Curvature, CurvatureField, principal_curvatures};
 pub use groups::Groups;
 pub use polygon_edges::PolygonEdges;
+pub use polyline::{Polyline, Seam};
 pub use topology::{Topology, topology, topology_of};
 
 /// The area of every face.

@@ -1,12 +1,12 @@
 //! Quads that flow: an even surface, its flow, a cover of the sphere, the fit.
 
-use glam::DVec3;
 use serde::Serialize;
 
 use super::Settings;
 use super::clock::Clock;
-use crate::deform::{self, Deformed, Flowing, Seam, Target};
+use crate::deform::{self, Deformed, Flowing, Target};
 use crate::embed::{self, Covered};
+use crate::measure::area_vector;
 use crate::mesh::{PolygonMesh, TriangleMesh, VertexId, VertexMap};
 use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
@@ -167,7 +167,7 @@ impl Ground<'_> {
             wanted: found.mesh.positions(),
             crosses: &found.crosses,
             sizes: &found.sizes,
-            seams: &seams(&found.seams),
+            seams: &found.seams,
         };
         let settings = deform::Settings::default();
         let fit = || deform::deform_flow(&self.even, flowing, self.target, &settings, &part);
@@ -183,17 +183,15 @@ impl Ground<'_> {
             },
         }))
     }
-}
 
-impl Ground<'_> {
     /// How many quads fail the gate.
     fn n_failed(&self, Deformed { mesh, report, .. }: &Deformed) -> usize {
         let halves = mesh
             .faces()
             .flat_map(|f| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]]);
         let halves: Vec<_> = halves.map(|t| t.map(|v| mesh.position(v))).collect();
-        let area = |[a, b, c]: &[DVec3; 3]| (b - a).cross(c - a).length() / 2.0;
-        let quad_area = halves.iter().map(area).sum::<f64>() / mesh.n_faces() as f64;
+        let areas = halves.iter().map(|&half| area_vector(half).length());
+        let quad_area = areas.sum::<f64>() / mesh.n_faces() as f64;
         let bvh = Bvh::new(&halves);
         let points = self.target.mesh().positions();
         let some = points.iter().step_by(points.len().div_ceil(N_PROBES));
@@ -203,16 +201,6 @@ impl Ground<'_> {
         }
         report.n_inverted
     }
-}
-
-/// The seams as the deformation knows them.
-fn seams(found: &[flow::Seam]) -> Vec<Seam> {
-    let seam = |seam: &flow::Seam| Seam {
-        vertices: seam.vertices.iter().map(|&v| VertexId(v)).collect(),
-        at: seam.at.clone(),
-        points: seam.points.clone(),
-    };
-    found.iter().map(seam).collect()
 }
 
 /// Splits a cancellation, which ends the run, from the reasons to use something else.

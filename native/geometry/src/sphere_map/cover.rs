@@ -78,7 +78,7 @@ pub fn check_cover(mesh: &PolygonMesh, points: &[DVec3]) -> Result<(), NotACover
     check_edges(mesh)?;
     let fans: Vec<_> = mesh
         .faces()
-        .map(|face| positive_fan(face, points))
+        .map(|face| positive_fan(face, |v| points[v.0 as usize]))
         .collect();
     let mut folds = fans.iter().enumerate().filter(|(_, fan)| fan.is_none());
     if let Some((first, _)) = folds.next() {
@@ -98,10 +98,16 @@ pub fn check_cover(mesh: &PolygonMesh, points: &[DVec3]) -> Result<(), NotACover
     }
 }
 
+/// Whether a spherical face with its corners at some points is split into positive triangles by
+/// the diagonals from one of its corners.
+pub fn is_unfolded(face: &[VertexId], at: impl Fn(VertexId) -> DVec3) -> bool {
+    positive_fan(face, at).is_some()
+}
+
 /// The corner from which the diagonals split a face into positive spherical triangles only.
-fn positive_fan(face: &[VertexId], points: &[DVec3]) -> Option<usize> {
+fn positive_fan(face: &[VertexId], at: impl Fn(VertexId) -> DVec3) -> Option<usize> {
     let positive = |t: [VertexId; 3]| {
-        let [a, b, c] = t.map(|v| points[v.0 as usize]);
+        let [a, b, c] = t.map(&at);
         is_positive(a, b, c)
     };
     // Opposite corners of a quad give the same diagonal.

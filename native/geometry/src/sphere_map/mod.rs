@@ -18,7 +18,7 @@ use robust::{Coord3D, orient3d};
 use thiserror::Error;
 
 use crate::mesh::{FaceId, Id, TriangleMesh, VertexId, VertexMap};
-pub use cover::{NotACover, check_cover};
+pub use cover::{NotACover, check_cover, is_unfolded};
 use locate::HintGrid;
 pub use travel::walk_along;
 

@@ -6,7 +6,8 @@ use glam::DVec3;
 
 use super::Line;
 use crate::flow::complex::{Complex, Step};
-use crate::mesh::TriangleMesh;
+use crate::measure::{Polyline, Seam};
+use crate::mesh::{Id, TriangleMesh, VertexId};
 
 /// How far a line's span may be off an axis for its walk to arrive: rounding.
 const ON_AXIS: f64 = 1e-6;
@@ -21,18 +22,6 @@ const N_ROUNDS: usize = 60;
 const PULL: f64 = 0.1;
 /// Share of the distance between two of them that is kept in one round.
 const LEAST_GAP: f64 = 0.3;
-
-/// Vertices of the quads along a sharp line of the surface.
-#[derive(Clone, PartialEq, Debug)]
-pub struct Seam {
-    /// The vertices, each joined to the next by an edge; a closed seam ends where it begins.
-    pub vertices: Vec<u32>,
-    /// The arc length at which each belongs. Where a seam is closed the line goes on at its
-    /// beginning.
-    pub at: Vec<f64>,
-    /// The corners of the line.
-    pub points: Vec<DVec3>,
-}
 
 /// The seam of every line that runs along an axis of a whole metric; it may touch singularities.
 ///
@@ -49,19 +38,19 @@ pub fn seams(
     let mut is_taken = vec![false; positions.len()];
     let mut seams = Vec::new();
     for (line, path) in lines.iter().zip(complex.paths.lines()) {
-        let arcs = Arcs::new(mesh, line);
+        let line = polyline(mesh, line);
         let walks = walker.along(complex, path).into_iter();
-        let laid = walks.map(|walk| arcs.lay(walk, positions));
+        let laid = walks.map(|walk| lay(&line, &walk, positions));
         let best = laid.reduce(|a, b| if b.0 < a.0 { b } else { a });
-        let Some((_, seam)) = best.filter(|(miss, seam)| seam.is_near(*miss)) else {
+        let Some((_, seam)) = best.filter(|(miss, seam)| is_near(seam, *miss)) else {
             continue;
         };
         let inner = &seam.vertices[1..seam.vertices.len() - 1];
-        if inner.iter().any(|&v| is_taken[v as usize]) {
+        if inner.iter().any(|v| is_taken[v.index()]) {
             continue;
         }
-        for &v in inner {
-            is_taken[v as usize] = true;
+        for v in inner {
+            is_taken[v.index()] = true;
         }
         seams.push(seam);
     }
@@ -147,141 +136,80 @@ impl Walker {
     }
 }
 
-/// A line by its arc length.
-struct Arcs {
-    points: Vec<DVec3>,
-    lengths: Vec<f64>,
-    is_closed: bool,
+/// The line on the surface.
+fn polyline(mesh: &TriangleMesh, line: &Line) -> Polyline {
+    let targets = line
+        .halfedges
+        .iter()
+        .map(|&h| mesh.position(mesh.target(h)));
+    let points = [mesh.position(line.ends[0])].into_iter().chain(targets);
+    Polyline::new(points.collect(), line.ends[0] == line.ends[1])
 }
 
-impl Arcs {
-    fn new(mesh: &TriangleMesh, line: &Line) -> Self {
-        let mut points = vec![mesh.position(line.ends[0])];
-        points.extend(
-            line.halfedges
-                .iter()
-                .map(|&h| mesh.position(mesh.target(h))),
-        );
-        let mut lengths = vec![0.0];
-        for (i, pair) in points.windows(2).enumerate() {
-            lengths.push(lengths[i] + pair[0].distance(pair[1]));
-        }
-        Self {
-            points,
-            lengths,
-            is_closed: line.ends[0] == line.ends[1],
-        }
-    }
-
-    fn whole(&self) -> f64 {
-        self.lengths[self.lengths.len() - 1]
-    }
-
-    /// Lays a walk along the line, near to first positions; returns how far its vertices are from there, squared.
-    fn lay(&self, walk: Vec<u32>, positions: &[DVec3]) -> (f64, Seam) {
-        let step = self.whole() / (walk.len() - 1) as f64;
-        let mut at: Vec<f64> = (0..walk.len()).map(|i| i as f64 * step).collect();
-        if self.is_closed {
-            // A closed line has no fixed vertex: the whole of it is shifted to where it lies.
-            let shifts = walk.iter().zip(&at).map(|(&v, &at)| {
-                let off = self.nearest(positions[v as usize]) - at;
-                let half = self.whole() / 2.0;
-                (off + half).rem_euclid(self.whole()) - half
-            });
-            let shift = shifts.sum::<f64>() / walk.len() as f64;
-            for at in &mut at {
-                *at += shift;
-            }
-        }
-        for _ in 0..N_ROUNDS {
-            self.settle(&walk, &mut at, positions);
-        }
-        let distances = (walk.iter().zip(&at))
-            .map(|(&v, &at)| positions[v as usize].distance_squared(self.point(at)));
-        let miss = distances.sum::<f64>() / walk.len() as f64;
-        let seam = Seam {
-            vertices: walk,
-            at,
-            points: self.points.clone(),
-        };
-        (miss, seam)
-    }
-
-    /// Moves each vertex that is not at an end of an open line along it towards its position.
-    fn settle(&self, walk: &[u32], at: &mut [f64], positions: &[DVec3]) {
-        let n = walk.len() - 1;
-        let step = self.whole() / n as f64;
-        for i in usize::from(!self.is_closed)..n {
-            let before = if i == 0 {
-                at[n - 1] - self.whole()
-            } else {
-                at[i - 1]
-            };
-            let now = at[i];
-            let tangent = self.point(now + 0.5 * step) - self.point(now - 0.5 * step);
-            let miss = positions[walk[i] as usize] - self.point(now);
-            let pull = miss.dot(tangent.normalize_or_zero());
-            let [low, high] = [before, at[i + 1]].map(|x| x + (now - x) * LEAST_GAP);
-            let even = 0.5 * (before + at[i + 1]) - now;
-            at[i] = (now + PULL * pull + 0.5 * even).clamp(low.min(high), high.max(low));
-            if i == 0 {
-                at[n] = at[0] + self.whole();
-            }
+/// Lays a walk along a line, near to first positions; returns how far its vertices are from there, squared.
+fn lay(line: &Polyline, walk: &[u32], positions: &[DVec3]) -> (f64, Seam) {
+    let whole = line.length();
+    let step = whole / (walk.len() - 1) as f64;
+    let mut at: Vec<f64> = (0..walk.len()).map(|i| i as f64 * step).collect();
+    if line.is_closed() {
+        // A closed line has no fixed vertex: the whole of it is shifted to where it lies.
+        let shifts = walk.iter().zip(&at).map(|(&v, &at)| {
+            let off = line.nearest_corner(positions[v as usize]) - at;
+            let half = whole / 2.0;
+            (off + half).rem_euclid(whole) - half
+        });
+        let shift = shifts.sum::<f64>() / walk.len() as f64;
+        for at in &mut at {
+            *at += shift;
         }
     }
-
-    /// The arc length of the corner nearest to a position.
-    fn nearest(&self, position: DVec3) -> f64 {
-        let distance = |p: &DVec3| p.distance_squared(position);
-        let corners = self.points.iter().zip(&self.lengths);
-        let nearest = corners.min_by(|a, b| distance(a.0).total_cmp(&distance(b.0)));
-        nearest.map_or(0.0, |(_, &length)| length)
+    for _ in 0..N_ROUNDS {
+        settle(line, walk, &mut at, positions);
     }
+    let distances = (walk.iter().zip(&at))
+        .map(|(&v, &at)| positions[v as usize].distance_squared(line.point(at)));
+    let miss = distances.sum::<f64>() / walk.len() as f64;
+    let seam = Seam {
+        vertices: walk.iter().map(|&v| VertexId(v)).collect(),
+        at,
+        line: line.clone(),
+    };
+    (miss, seam)
+}
 
-    fn point(&self, at: f64) -> DVec3 {
-        let at = if self.is_closed {
-            at.rem_euclid(self.whole())
-        } else {
-            at
-        };
-        let after = self.lengths.partition_point(|&l| l <= at);
-        let i = after.clamp(1, self.lengths.len() - 1);
-        let step = self.lengths[i] - self.lengths[i - 1];
-        let share = ((at - self.lengths[i - 1]) / step.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        self.points[i - 1].lerp(self.points[i], share)
+/// Moves each vertex that is not at an end of an open line along it towards its position.
+fn settle(line: &Polyline, walk: &[u32], at: &mut [f64], positions: &[DVec3]) {
+    let n = walk.len() - 1;
+    let whole = line.length();
+    let step = whole / n as f64;
+    for i in usize::from(!line.is_closed())..n {
+        let before = if i == 0 { at[n - 1] - whole } else { at[i - 1] };
+        let now = at[i];
+        let tangent = line.point(now + 0.5 * step) - line.point(now - 0.5 * step);
+        let miss = positions[walk[i] as usize] - line.point(now);
+        let pull = miss.dot(tangent.normalize_or_zero());
+        let [low, high] = [before, at[i + 1]].map(|x| x + (now - x) * LEAST_GAP);
+        let even = 0.5 * (before + at[i + 1]) - now;
+        at[i] = (now + PULL * pull + 0.5 * even).clamp(low.min(high), high.max(low));
+        if i == 0 {
+            at[n] = at[0] + whole;
+        }
     }
 }
 
-impl Seam {
-    /// Whether a mean squared miss is small beside its edges.
-    fn is_near(&self, miss: f64) -> bool {
-        let edge = self.length() / (self.vertices.len() - 1) as f64;
-        miss < (FARTHEST * edge).powi(2)
-    }
+/// Whether a mean squared miss is small beside the edges of a seam.
+fn is_near(seam: &Seam, miss: f64) -> bool {
+    let edge = seam.line.length() / (seam.vertices.len() - 1) as f64;
+    miss < (FARTHEST * edge).powi(2)
+}
 
-    /// The length of the line.
-    pub fn length(&self) -> f64 {
-        let steps = self.points.windows(2).map(|pair| pair[0].distance(pair[1]));
-        steps.sum()
+/// The vertices of a seam, each with the place on the line where it belongs.
+pub fn goals(seam: &Seam) -> Vec<(u32, DVec3)> {
+    let mut goals: Vec<(u32, DVec3)> = (seam.vertices.iter().zip(&seam.at))
+        .map(|(&v, &at)| (v.0, seam.line.point(at)))
+        .collect();
+    if seam.line.is_closed() {
+        goals.pop();
     }
-
-    /// The vertices, each with the place on the line where it belongs.
-    pub fn goals(&self) -> Vec<(u32, DVec3)> {
-        let mut lengths = vec![0.0];
-        for (i, pair) in self.points.windows(2).enumerate() {
-            lengths.push(lengths[i] + pair[0].distance(pair[1]));
-        }
-        let arcs = Arcs {
-            points: self.points.clone(),
-            lengths,
-            is_closed: self.vertices.first() == self.vertices.last(),
-        };
-        let mut goals: Vec<(u32, DVec3)> = (self.vertices.iter().zip(&self.at))
-            .map(|(&v, &at)| (v, arcs.point(at)))
-            .collect();
-        if arcs.is_closed {
-            goals.pop();
-        }
-        goals
-    }
+    goals
 }
