@@ -56,6 +56,9 @@ format: $(VENV)/lint.stamp ## Formats all code
 	$(BIN)/ruff check --fix --exit-zero .
 	$(BIN)/ruff format .
 
+# One build of each crate is all that runs here: nothing is kept for the next one, on disk or in pip's cache.
+ci: export CARGO_INCREMENTAL = 0
+ci: export PIP_NO_CACHE_DIR = 1
 ci: ## Runs what continuous integration runs: lint and test on Python 3.11 and 3.13
 	$(MAKE) test-rust
 	$(MAKE) test-python PYTHON_VERSION=3.13
