@@ -75,6 +75,7 @@ def _remesh_one(
         arrays.loop_start,
         arrays.corner_vert,
         material_index=arrays.material_index,
+        marked_edges=arrays.marked_edges,
         scale=task.scale,
         progress=listener,
         cancel=cancel,

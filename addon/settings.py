@@ -2,6 +2,7 @@
 """What the user can set; the operator and the panel share one list of properties."""
 
 # pyright: reportInvalidTypeForm=false
+import math
 from typing import Any
 
 import bpy
@@ -20,6 +21,11 @@ _PRIMITIVES = (
     ("QUAD_SPHERE", "Quad Sphere", "A subdivided box: even rows of quads, 8 irregular vertices"),
     ("ADAPTIVE", "Adaptive", "Triangles placed where the surface needs them"),
     ("ICOSPHERE", "Icosphere", "A subdivided icosahedron: 12 irregular vertices"),
+)
+_MARKS = (
+    ("SHARP", "Sharp", "Edges marked as sharp"),
+    ("CREASE", "Crease", "Edges with a subdivision crease"),
+    ("SEAM", "Seam", "Edges marked as seams of the UV map"),
 )
 _PREDICTORS = (("SOLVER", "Solver", "Finds the map to the sphere by optimisation"),)
 
@@ -53,6 +59,23 @@ class Settings:
     )
     adaptivity: _share(
         "Adaptivity", "Flowing quads: 0 makes all of one size, 1 much smaller ones where it bends"
+    )
+    sharp_angle: FloatProperty(
+        name="Sharp Angle",
+        description=(
+            "Edges at which the surface turns by more than this get edges of the result along them"
+        ),
+        default=math.radians(40.0),
+        min=0.0,
+        max=math.pi,
+        subtype="ANGLE",
+    )
+    marked_edges: EnumProperty(
+        name="Marked Edges",
+        description="Which marks of edges get edges of the result along them, however flat",
+        items=_MARKS,
+        options={"ENUM_FLAG"},
+        default={"SHARP", "CREASE"},
     )
     predictor: EnumProperty(
         name="Predictor",
@@ -91,8 +114,9 @@ class OrbflowSettings(bpy.types.PropertyGroup, Settings):
 
 
 def for_core(source: Settings) -> dict[str, Any]:
-    """The settings as keywords of `orbflow_native.remesh`."""
-    return {name: _value(getattr(source, name)) for name in NAMES}
+    """The settings as keywords of `orbflow_native.remesh`; marks are read off the mesh."""
+    values = {name: _value(getattr(source, name)) for name in NAMES if name != "marked_edges"}
+    return values | {"sharp_angle": math.degrees(source.sharp_angle)}
 
 
 def copy(source: Settings, target: object) -> None:

@@ -1,6 +1,7 @@
 """The border: names, defaults and ranges are equal in the core, the package and the add-on."""
 
 import inspect
+import math
 import re
 import tomllib
 from typing import Any
@@ -62,6 +63,8 @@ def test_panel_and_operator_have_the_same_settings(operator: Any, scene_settings
         "primitive",
         "follow_shape",
         "adaptivity",
+        "sharp_angle",
+        "marked_edges",
         "predictor",
         "threads",
         "seed",
@@ -73,6 +76,7 @@ def test_the_add_on_has_the_defaults_and_ranges_of_the_core(operator: Any) -> No
     given = defaults(_core.remesh)
     for name in ("faces", "follow_shape", "adaptivity", "threads", "seed"):
         assert operator[name].default == given[name], name
+    assert math.degrees(operator["sharp_angle"].default) == pytest.approx(given["sharp_angle"])
     assert operator["faces"].hard_min == orbflow_native.MIN_FACES
     assert operator["faces"].hard_max == orbflow_native.MAX_FACES
     assert operator["kind"].default.lower() == given["kind"]

@@ -143,6 +143,26 @@ def test_faces_are_even_as_the_object_is_seen(open_fixture: Open) -> None:
     assert lengths.std() / lengths.mean() < 0.25
 
 
+@pytest.mark.parametrize("mark", ["SHARP", "CREASE", "SEAM"])
+def test_edges_marked_by_the_artist_are_edges_of_the_result(open_fixture: Open, mark: str) -> None:
+    open_fixture("01")
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=40, ring_count=20)
+    thing = bpy.context.object
+    flat = {v.index for v in thing.data.vertices if abs(v.co[2]) < 1e-6}
+    name, kind = addon("mesh_arrays")._MARKS[mark]
+    attribute = thing.data.attributes.get(name) or thing.data.attributes.new(name, kind, "EDGE")
+    marked = [set(edge.vertices) <= flat for edge in thing.data.edges]
+    attribute.data.foreach_set("value", np.array(marked, float if kind == "FLOAT" else bool))
+    plain = thing.copy()
+    plain.data = thing.data.copy()
+    press.orbflow_remesh(faces=400, marked_edges={mark})
+    assert sum(abs(v.co[2]) < 1e-5 for v in thing.data.vertices) >= 24
+    bpy.context.scene.collection.objects.link(plain)
+    select(plain)
+    press.orbflow_remesh(faces=400, marked_edges=set())
+    assert sum(abs(v.co[2]) < 1e-5 for v in plain.data.vertices) < 12
+
+
 def test_closed_parts_of_one_object_are_done_one_by_one(open_fixture: Open) -> None:
     parts = open_fixture("11")
     press.orbflow_remesh(faces=500)

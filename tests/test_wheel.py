@@ -53,6 +53,23 @@ def test_materials_come_over(mesh: Arrays) -> None:
     assert agrees[abs(new_heights) > 0.1].all()
 
 
+def test_marked_edges_are_edges_of_the_result(mesh: Arrays) -> None:
+    points, _, corners = mesh
+    sides = np.unique(np.sort(np.stack([corners, np.roll(corners, 1)], -1)), axis=0)
+    ring = sides[(np.abs(points[sides][..., 2]) < 1e-6).all(1)].astype(np.int32)
+    settings = {"faces": 500, "score_samples": 0}
+    plain, ringed = (
+        orbflow_native.remesh(*mesh, **settings, marked_edges=edges) for edges in (None, ring)
+    )
+    n_on_ring = [int((np.abs(each.positions[:, 2]) < 1e-5).sum()) for each in (plain, ringed)]
+    assert n_on_ring[1] > max(20, 2 * n_on_ring[0])
+    ring[3, 1] = -7
+    with pytest.raises(orbflow_native.InputError, match="marked edge 3 names vertex -7"):
+        orbflow_native.remesh(*mesh, marked_edges=ring)
+    with pytest.raises(ValueError, match=r"marked_edges must be of shape \(E, 2\), not \(1, 3\)"):
+        orbflow_native.remesh(*mesh, marked_edges=np.zeros((1, 3), np.int32))
+
+
 def test_a_stretched_object_gets_even_faces_where_it_is_seen(mesh: Arrays) -> None:
     def variation(scale: tuple[float, float, float]) -> float:
         result = orbflow_native.remesh(*mesh, faces=1000, kind="triangles", scale=scale)

@@ -58,6 +58,9 @@ pub struct Remesh {
     pub primitive: Option<Primitive>,
     #[command(flatten)]
     pub flow: Flow,
+    /// Edges sharper than this get edges of the result along them; 180 for none
+    #[arg(long, value_name = "DEGREES", default_value_t = Settings::default().sharp_angle, value_parser = degrees)]
+    pub sharp_angle: f64,
     #[command(flatten)]
     pub run: Run,
     /// Write what is told of the run, as JSON
@@ -199,6 +202,7 @@ impl Remesh {
                 follow_shape: self.flow.follow_shape,
                 adaptivity: self.flow.adaptivity,
             },
+            sharp_angle: self.sharp_angle,
             seed: self.run.seed,
             threads: self.run.threads,
             score: self.report.as_ref().map(|_| score::Settings::default()),
@@ -304,11 +308,19 @@ fn kind() -> ValueParser {
 }
 
 fn share(text: &str) -> Result<f64, String> {
+    up_to(text, 1.0)
+}
+
+fn degrees(text: &str) -> Result<f64, String> {
+    up_to(text, 180.0)
+}
+
+fn up_to(text: &str, most: f64) -> Result<f64, String> {
     let value = text.parse().map_err(|error| format!("{error}"))?;
-    if (0.0..=1.0).contains(&value) {
+    if (0.0..=most).contains(&value) {
         return Ok(value);
     }
-    Err("it goes from 0 to 1".to_owned())
+    Err(format!("it goes from 0 to {most}"))
 }
 
 fn primitive() -> ValueParser {

@@ -53,12 +53,14 @@ def remesh(
     primitive: str | None = None,
     follow_shape: float = 0.5,
     adaptivity: float = 0.5,
+    sharp_angle: float = 40.0,
     predictor: str = "solver",
     threads: int = 0,
     seed: int = 0,
     scale: tuple[float, float, float] | None = None,
     score_samples: int = 10_000,
     material_index: _Ints | None = None,
+    marked_edges: _Ints | None = None,
     reduced: tuple[_Floats, _Ints] | None = None,
     progress: Callable[[str, float], Any] | None = None,
     cancel: _core.CancelToken | None = None,
@@ -69,7 +71,9 @@ def remesh(
     "triangles"; `primitive` is "flow", "quad-sphere", "adaptive", "icosphere" or `None` for what
     suits the kind. How quads flow: `follow_shape` from 0 (smooth loops) to 1 (edges along the
     curvature), `adaptivity` from 0 (quads of one size) to 1 (much smaller where the surface is
-    bent). `scale` is the scale of the object: faces are even in the scaled space, the
+    bent). Edges at which the surface turns by more than `sharp_angle` degrees, and the
+    `marked_edges`, pairs of vertices (E, 2), get edges of the result along them.
+    `scale` is the scale of the object: faces are even in the scaled space, the
     result is in the space of the input. `reduced` is the same mesh with fewer triangles, as
     points (V, 3) and triangles (T, 3); without it, fast-simplification makes it for large
     meshes where installed.
@@ -90,12 +94,14 @@ def remesh(
         primitive=primitive,
         follow_shape=follow_shape,
         adaptivity=adaptivity,
+        sharp_angle=sharp_angle,
         predictor=predictor,
         threads=threads,
         seed=seed,
         scale=scale,
         score_samples=score_samples,
         material_index=material_index,
+        marked_edges=marked_edges,
         reduced=reduced,
         progress=progress,
         cancel=cancel,

@@ -39,7 +39,7 @@ pub fn triangles(
     triangles: &Bound<'_, PyAny>,
     scale: DVec3,
 ) -> PyResult<PolygonMesh> {
-    let corners = rows::<i32>(triangles, "triangles", "(T, 3)")?;
+    let corners = rows::<i32, 3>(triangles, "triangles", "(T, 3)")?;
     let starts: Vec<i32> = (0..corners.len() as i32 / 3).map(|f| 3 * f).collect();
     mesh(points(points_in, "points", scale)?, &starts, &corners)
         .map_err(|error| InputError::new_err(error.to_string()))
@@ -59,18 +59,35 @@ pub fn column(array: &Bound<'_, PyAny>, name: &str, shape: &str) -> PyResult<Vec
 
 /// The points of a `(N, 3) float32` array, multiplied by `scale`.
 fn points(array: &Bound<'_, PyAny>, name: &str, scale: DVec3) -> PyResult<Vec<DVec3>> {
-    let flat = rows::<f32>(array, name, "(V, 3)")?;
+    let flat = rows::<f32, 3>(array, name, "(V, 3)")?;
     let point = |p: &[f32]| DVec3::new(p[0].into(), p[1].into(), p[2].into()) * scale;
     Ok(flat.chunks_exact(3).map(point).collect())
 }
 
-/// The values of a `(N, 3)` array, row after row.
-fn rows<T: Element + Copy>(array: &Bound<'_, PyAny>, name: &str, shape: &str) -> PyResult<Vec<T>> {
+/// The edges of a `(E, 2) int32` array, by their ends.
+pub fn vertex_pairs(array: &Bound<'_, PyAny>) -> PyResult<Vec<[VertexId; 2]>> {
+    let flat = rows::<i32, 2>(array, "marked_edges", "(E, 2)")?;
+    let pairs = flat.chunks_exact(2).enumerate();
+    let vertex = |edge: usize, vertex: i32| {
+        let id = u32::try_from(vertex).map(VertexId);
+        id.map_err(|_| InputError::new_err(format!("marked edge {edge} names vertex {vertex}")))
+    };
+    pairs
+        .map(|(edge, ends)| Ok([vertex(edge, ends[0])?, vertex(edge, ends[1])?]))
+        .collect()
+}
+
+/// The values of a `(N, WIDTH)` array, row after row.
+fn rows<T: Element + Copy, const WIDTH: usize>(
+    array: &Bound<'_, PyAny>,
+    name: &str,
+    shape: &str,
+) -> PyResult<Vec<T>> {
     let typed = array
         .cast::<PyArray2<T>>()
         .map_err(|_| wrong_type::<T>(array, name, shape))?;
     let [n, width] = [typed.shape()[0], typed.shape()[1]];
-    if width != 3 {
+    if width != WIDTH {
         return Err(PyValueError::new_err(format!(
             "{name} must be of shape {shape}, not ({n}, {width})"
         )));

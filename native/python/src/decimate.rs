@@ -55,9 +55,8 @@ pub fn decimate<'py>(
         .map(|array| arrays::column(array, "material_index", "(F,)"))
         .transpose()?;
     let input = Input {
-        mesh: &mesh,
         materials: materials.as_deref(),
-        reduced: None,
+        ..Input::new(&mesh)
     };
     let decimated = Job::new(progress, cancel)
         .run(py, |progress| pipeline::decimate(input, faces, progress))?;

@@ -33,6 +33,8 @@ pub struct Remeshed {
 /// object: faces are even in the scaled space, the result is in the space of the input.
 /// How quads flow: `follow_shape` from 0 (smooth loops) to 1 (edges along the curvature), `adaptivity`
 /// from 0 (quads of one size) to 1 (much smaller where the surface is bent).
+/// Edges at which the surface turns by more than `sharp_angle` degrees, and the `marked_edges`
+/// `(E, 2) int32`, get edges of the result along them.
 /// `score_samples` is how many points of each surface the score looks at; 0 makes no score.
 /// `progress` is called on the calling thread, at most 20 times a second, with the name of the step
 /// and the share of the work that is done. The same input and settings give the same bytes.
@@ -41,8 +43,9 @@ pub struct Remeshed {
 #[pyfunction]
 #[pyo3(signature = (
     positions, loop_start, corner_vert, *, faces=2000, kind="quads", primitive=None,
-    follow_shape=0.5, adaptivity=0.5, predictor="solver", threads=0, seed=0, scale=None,
-    score_samples=10_000, material_index=None, reduced=None, progress=None, cancel=None,
+    follow_shape=0.5, adaptivity=0.5, sharp_angle=40.0, predictor="solver", threads=0, seed=0,
+    scale=None, score_samples=10_000, material_index=None, marked_edges=None, reduced=None,
+    progress=None, cancel=None,
 ))]
 #[expect(
     clippy::too_many_arguments,
@@ -58,12 +61,14 @@ pub fn remesh<'py>(
     primitive: Option<&str>,
     follow_shape: f64,
     adaptivity: f64,
+    sharp_angle: f64,
     predictor: &str,
     threads: usize,
     seed: u64,
     scale: Option<(f64, f64, f64)>,
     score_samples: usize,
     material_index: Option<&Bound<'py, PyAny>>,
+    marked_edges: Option<&Bound<'py, PyAny>>,
     reduced: Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
     progress: Option<Bound<'py, PyAny>>,
     cancel: Option<&CancelToken>,
@@ -78,6 +83,7 @@ pub fn remesh<'py>(
     let materials = material_index
         .map(|array| arrays::column(array, "material_index", "(F,)"))
         .transpose()?;
+    let marked = marked_edges.map(arrays::vertex_pairs).transpose()?;
     let reduced = reduced
         .map(|(points, triangles)| arrays::triangles(&points, &triangles, scale))
         .transpose()?;
@@ -91,6 +97,7 @@ pub fn remesh<'py>(
             follow_shape,
             adaptivity,
         },
+        sharp_angle,
         seed,
         threads,
         score: (score_samples > 0).then(|| score::Settings {
@@ -103,6 +110,7 @@ pub fn remesh<'py>(
         mesh: &mesh,
         materials: materials.as_deref(),
         reduced: reduced.as_ref(),
+        marked: marked.as_deref().unwrap_or_default(),
     };
     let remeshed = Job::new(progress, cancel).run(py, |progress| {
         pipeline::remesh(input, &settings, &predictor, progress)

@@ -1,13 +1,13 @@
-//! Sharp edges of a surface, chained into lines that end in corners.
+//! Sharp and marked edges of a surface, chained into lines that end in corners.
 
 use glam::DVec3;
 
-use crate::mesh::{FaceMap, TriangleMesh, VertexId, VertexMap};
+use crate::mesh::{HalfedgeMap, TriangleMesh, VertexId, VertexMap};
 
 /// Cosine of the turn at which a line has a corner even without a third line: 50°.
 const CORNER_COSINE: f64 = 0.64;
 
-/// A chain of sharp edges from corner to corner, or around.
+/// A chain of marked edges from corner to corner, or around.
 #[derive(Clone, PartialEq, Debug)]
 pub(super) struct FeatureLine {
     /// The vertices in order; a closed line ends with the one it starts with.
@@ -56,15 +56,9 @@ impl FeatureLine {
     }
 }
 
-/// Chains the edges at which face normals turn by more than `angle`, longest line first.
-///
-/// Faces without area make no sharp edge: they have no normal to turn.
-pub(super) fn feature_lines(
-    mesh: &TriangleMesh,
-    normals: &FaceMap<DVec3>,
-    angle: f64,
-) -> Vec<FeatureLine> {
-    let neighbours = sharp_neighbours(mesh, normals, angle.cos());
+/// Chains the edges that are marked on either side, longest line first.
+pub(super) fn feature_lines(mesh: &TriangleMesh, marked: &HalfedgeMap<bool>) -> Vec<FeatureLine> {
+    let neighbours = marked_neighbours(mesh, marked);
     let is_corner = |v: VertexId| match neighbours[v][..] {
         [] => false,
         [a, b] => {
@@ -94,18 +88,13 @@ pub(super) fn feature_lines(
     lines
 }
 
-fn sharp_neighbours(
-    mesh: &TriangleMesh,
-    normals: &FaceMap<DVec3>,
-    cosine: f64,
-) -> VertexMap<Vec<VertexId>> {
+fn marked_neighbours(mesh: &TriangleMesh, marked: &HalfedgeMap<bool>) -> VertexMap<Vec<VertexId>> {
     let mut neighbours = VertexMap::filled(mesh.n_vertices(), Vec::new());
     for h in mesh.halfedge_ids() {
         let Some(twin) = mesh.twin(h).filter(|twin| h < *twin) else {
             continue;
         };
-        let [m, n] = [normals[h.face()], normals[twin.face()]];
-        if m != DVec3::ZERO && n != DVec3::ZERO && m.dot(n) < cosine {
+        if marked[h] || marked[twin] {
             neighbours[mesh.origin(h)].push(mesh.target(h));
             neighbours[mesh.target(h)].push(mesh.origin(h));
         }
@@ -113,7 +102,7 @@ fn sharp_neighbours(
     neighbours
 }
 
-/// Walks along sharp edges, each once. A bit per neighbour says which edges were walked.
+/// Walks along marked edges, each once. A bit per neighbour says which edges were walked.
 struct Walker<'a> {
     neighbours: &'a VertexMap<Vec<VertexId>>,
     seen: VertexMap<u64>,
@@ -159,11 +148,11 @@ impl Walker<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measure::face_normals;
+    use crate::measure::sharp_edges;
     use crate::shapes;
 
     fn lines(mesh: &TriangleMesh) -> Vec<FeatureLine> {
-        feature_lines(mesh, &face_normals(mesh), 40f64.to_radians())
+        feature_lines(mesh, &sharp_edges(mesh, 40f64.to_radians()))
     }
 
     #[test]

@@ -55,6 +55,9 @@ impl Seams {
         for v in seams.vertices().collect::<Vec<_>>() {
             sheet.pin(v);
         }
+        for pair in flowing.seams.iter().flat_map(|s| s.vertices.windows(2)) {
+            sheet.keep_edge(pair[0], pair[1]);
+        }
         for step in 0..N_STEPS {
             if seams.step(sheet) == 0 {
                 break;

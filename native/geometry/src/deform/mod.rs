@@ -36,7 +36,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::measure::{Seam, vertex_normals};
-use crate::mesh::{FaceId, FaceMap, PolygonMesh};
+use crate::mesh::{FaceId, FaceMap, PolygonMesh, VertexId};
 use crate::progress::{Cancelled, Progress};
 use crate::sphere_map::{NotACover, SphereMap, check_cover};
 use cover::Cover;
@@ -87,6 +87,8 @@ pub struct Deformed {
     pub mesh: PolygonMesh,
     /// The sphere point of every vertex, with which the faces cover the sphere once.
     pub sphere: Vec<DVec3>,
+    /// The edges that lie along the target's sharp or marked ones, each once, in order.
+    pub features: Vec<[VertexId; 2]>,
     /// What was done.
     pub report: Report,
 }
@@ -204,12 +206,14 @@ fn fit_to_target(
 
 impl Deformed {
     fn new(sheet: Sheet, mut report: Report) -> Self {
+        let features = sheet.features();
         let (mesh, sphere) = sheet.into_mesh();
         debug_assert_eq!(check_cover(&mesh, &sphere), Ok(()));
         report.n_inverted = untangle::n_inverted(&mesh);
         Self {
             mesh,
             sphere,
+            features,
             report,
         }
     }

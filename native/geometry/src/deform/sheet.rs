@@ -148,7 +148,7 @@ impl<'a> Sheet<'a> {
         self.pinned[vertex]
     }
 
-    /// Saves an edge from flips.
+    /// Saves an edge, which lies along a sharp one, from flips.
     pub fn keep_edge(&mut self, a: VertexId, b: VertexId) {
         self.kept.insert([a.min(b), a.max(b)]);
     }
@@ -156,6 +156,14 @@ impl<'a> Sheet<'a> {
     /// Whether an edge is saved from flips.
     pub fn is_kept(&self, a: VertexId, b: VertexId) -> bool {
         self.kept.contains(&[a.min(b), a.max(b)])
+    }
+
+    /// The edges that are saved from flips and have both ends where they were led, in order.
+    pub fn features(&self) -> Vec<[VertexId; 2]> {
+        let is_there = |[a, b]: &[VertexId; 2]| self.is_pinned(*a) && self.is_pinned(*b);
+        let mut edges: Vec<_> = self.kept.iter().copied().filter(is_there).collect();
+        edges.sort_unstable();
+        edges
     }
 
     /// The face on the left of the edge from `a` to `b`.

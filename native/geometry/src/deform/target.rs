@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::features::{FeatureLine, feature_lines};
-use crate::measure::face_normals;
-use crate::mesh::{FaceId, FaceMap, TriangleMesh, VertexId};
+use crate::measure::{face_normals, sharp_edges};
+use crate::mesh::{FaceId, FaceMap, HalfedgeMap, TriangleMesh, VertexId};
 use crate::nearest::{Bvh, Closest};
 use crate::progress::{Cancelled, Progress};
 
@@ -24,22 +24,25 @@ impl Target {
     /// # Errors
     /// [`Cancelled`].
     pub fn new(mesh: TriangleMesh, progress: &Progress) -> Result<Self, Cancelled> {
-        Self::with_crease_angle(mesh, 40f64.to_radians(), progress)
+        progress.check()?;
+        let sharp = sharp_edges(&mesh, 40f64.to_radians());
+        Self::with_features(mesh, &sharp, progress)
     }
 
-    /// The same with another angle (radians) from which on edges count as sharp.
+    /// The same with the edges, marked on one side or both, along which the result is to have
+    /// edges too.
     ///
     /// # Errors
     /// [`Cancelled`].
-    pub fn with_crease_angle(
+    pub fn with_features(
         mesh: TriangleMesh,
-        crease_angle: f64,
+        marked: &HalfedgeMap<bool>,
         progress: &Progress,
     ) -> Result<Self, Cancelled> {
         progress.check()?;
         let normals = face_normals(&mesh);
         progress.check()?;
-        let features = feature_lines(&mesh, &normals, crease_angle);
+        let features = feature_lines(&mesh, marked);
         progress.check()?;
         let bvh = Bvh::build_of_mesh(&mesh, progress)?;
         Ok(Self {
@@ -60,7 +63,7 @@ impl Target {
         &self.bvh
     }
 
-    /// The lines of sharp edges, longest first.
+    /// The lines of sharp or marked edges, longest first.
     pub(super) fn features(&self) -> &[FeatureLine] {
         &self.features
     }

@@ -17,7 +17,7 @@ use super::search::{self, QuantiseError, Quantised, Score, quantise};
 use super::singularities::tidy;
 use super::sizes::{self, SizesError};
 use super::wish::{WishError, wish};
-use crate::measure::{Seam, total_area};
+use crate::measure::{Seam, sharp_edges, total_area};
 use crate::mesh::{FaceMap, HalfedgeMap, PolygonMesh, PolygonMeshError, TriangleMesh, VertexMap};
 use crate::progress::{Cancelled, Progress};
 use crate::sphere_map::SphereMap;
@@ -161,13 +161,20 @@ fn is_near(n_quads: usize, n_wanted: usize) -> bool {
 
 /// Makes a closed mesh of quads whose edges follow the shape of a surface of genus 0.
 ///
+/// Edges lie along the surface's sharp edges and along those that are marked, on both sides of each.
+///
 /// The surface's triangles should be even, and some times as many as the quads. What is returned
 /// is closed, without doubled edges, and has as many quads as wanted within 2 %; whether it can be
 /// laid on the sphere is not known yet. Costs a second or two for 2,000 quads.
 ///
 /// # Errors
 /// [`enum@Error`].
-pub fn flow(map: &SphereMap, settings: &Settings, progress: &Progress) -> Result<Flow, Error> {
+pub fn flow(
+    map: &SphereMap,
+    marked: &HalfedgeMap<bool>,
+    settings: &Settings,
+    progress: &Progress,
+) -> Result<Flow, Error> {
     let mesh = map.mesh();
     let sizes = sizes::sizes(
         mesh,
@@ -180,7 +187,12 @@ pub fn flow(map: &SphereMap, settings: &Settings, progress: &Progress) -> Result
         wish,
         sharp,
         lines,
-    } = dress(mesh, settings, &sizes, &progress.part("", 0.05, 0.2))?;
+    } = dress(
+        (mesh, marked),
+        settings,
+        &sizes,
+        &progress.part("", 0.05, 0.2),
+    )?;
     let dressed = (&field, &wish);
     let part = progress.part("", 0.2, 0.95);
     let ends = progress.part("", 0.95, 1.0);
@@ -284,7 +296,7 @@ struct Dressed {
 /// The field, its singularities tidied for quads of edge length `h`, the wish, and the lines of
 /// sharp edges if these are clear.
 fn dress(
-    mesh: &TriangleMesh,
+    (mesh, marked): (&TriangleMesh, &HalfedgeMap<bool>),
     settings: &Settings,
     sizes: &FaceMap<f64>,
     progress: &Progress,
@@ -294,7 +306,12 @@ fn dress(
         sharp_angle: sharp_angle.min(PI),
         ..settings.field
     };
-    let sharp = creases::sharp_edges(mesh, sharp_angle);
+    let sharp = sharp_edges(mesh, sharp_angle);
+    let sharp = sharp
+        .iter()
+        .zip(marked.iter())
+        .map(|(a, b)| a | b)
+        .collect();
     let mut field = field::orient(mesh, &pull, &progress.part("", 0.0, 0.5))?;
     tidy(mesh, &mut field, sizes);
     let h = (total_area(mesh) / settings.n_quads.max(1) as f64).sqrt();
@@ -345,18 +362,25 @@ mod tests {
         SphereMap::prove(mesh, sphere).unwrap()
     }
 
+    fn unmarked(map: &SphereMap) -> HalfedgeMap<bool> {
+        HalfedgeMap::filled(3 * map.mesh().n_faces(), false)
+    }
+
     #[test]
     fn blobs_get_closed_quads_of_the_wanted_number() {
         for seed in 0..3 {
             let map = radial_map(shapes::blob(seed, 20));
             let settings = Settings::new(300);
-            let found = flow(&map, &settings, &Progress::none()).unwrap();
+            let found = flow(&map, &unmarked(&map), &settings, &Progress::none()).unwrap();
             let n = found.mesh.n_faces();
             assert_eq!((found.mesh.n_quads(), found.mesh.n_vertices()), (n, n + 2));
             assert!(n.abs_diff(300) <= 6, "{n}");
             assert_eq!(found.crosses.len(), map.mesh().n_faces());
             assert!(found.sphere.iter().all(|p| p.is_finite()));
-            assert_eq!(flow(&map, &settings, &Progress::none()), Ok(found));
+            assert_eq!(
+                flow(&map, &unmarked(&map), &settings, &Progress::none()),
+                Ok(found)
+            );
         }
     }
 
@@ -365,7 +389,12 @@ mod tests {
         let token = CancelToken::new();
         token.cancel();
         let map = radial_map(shapes::sphere(8));
-        let result = flow(&map, &Settings::new(50), &Progress::silent(token));
+        let result = flow(
+            &map,
+            &unmarked(&map),
+            &Settings::new(50),
+            &Progress::silent(token),
+        );
         assert_eq!(result, Err(Error::Cancelled(Cancelled)));
     }
 }

@@ -7,6 +7,7 @@ mod curvature;
 mod groups;
 mod polygon_edges;
 mod polyline;
+mod sharp;
 mod topology;
 
 use glam::DVec3;
@@ -17,6 +18,7 @@ pub use curvature::{Curvature, CurvatureField, principal_curvatures};
 pub use groups::Groups;
 pub use polygon_edges::PolygonEdges;
 pub use polyline::{Polyline, Seam};
+pub use sharp::sharp_edges;
 pub use topology::{Topology, topology, topology_of};
 
 /// The area of every face.

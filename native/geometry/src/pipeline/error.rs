@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use super::settings::{Kind, MAX_FACES, MIN_FACES, Primitive};
+use crate::mesh::VertexId;
 use crate::progress::Cancelled;
 use crate::{clean, decimate, deform, embed, flow, sphere};
 
@@ -22,6 +23,22 @@ pub enum Error {
         name: &'static str,
         /// What was asked for.
         value: f64,
+    },
+    /// The sharp angle is out of range.
+    #[error("the sharp angle is {degrees} degrees; it goes from 0 to 180")]
+    AngleOutOfRange {
+        /// What was asked for.
+        degrees: f64,
+    },
+    /// A marked edge names a vertex that does not exist.
+    #[error("marked edge {edge} names vertex {vertex}, but there are {n_vertices} vertices")]
+    MarkedEdge {
+        /// Which edge.
+        edge: usize,
+        /// What it names.
+        vertex: VertexId,
+        /// How many vertices there are.
+        n_vertices: usize,
     },
     /// The primitive has other polygons than were asked for.
     #[error("the {} primitive makes {}, but {} were asked for", primitive.name(), primitive.kind().name(), kind.name())]

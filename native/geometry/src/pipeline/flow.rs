@@ -7,7 +7,7 @@ use super::clock::Clock;
 use crate::deform::{self, Deformed, Flowing, Target};
 use crate::embed::{self, Covered};
 use crate::measure::area_vector;
-use crate::mesh::{PolygonMesh, TriangleMesh, VertexId, VertexMap};
+use crate::mesh::{HalfedgeMap, PolygonMesh, TriangleMesh, VertexId, VertexMap};
 use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
 use crate::sphere::{self, Adaptive};
@@ -88,6 +88,8 @@ pub struct FlowedPart {
 /// An even surface and what its quads are fitted to.
 struct Ground<'a> {
     even: SphereMap,
+    /// The edges of the even surface that lie along the target's sharp or marked ones.
+    marked: HalfedgeMap<bool>,
     sphere: sphere::Report,
     target: &'a Target,
     style: flow::Settings,
@@ -108,15 +110,16 @@ pub fn flow_part(
     let even = clock.step("sphere", || {
         told(even(map, target, (n_quads, settings.seed), &part))
     })?;
-    let (even, sphere) = match even {
+    let (even, marked, sphere) = match even {
         Ok(even) => even,
         Err(reason) => return Ok(Err(reason)),
     };
     let ground = Ground {
         even,
+        marked,
         sphere,
         target,
-        style: settings.style.flow(n_quads),
+        style: settings.flow(n_quads),
     };
     let mut best: Result<FlowedPart, String> = Err(String::new());
     let mut from = 0.2;
@@ -155,7 +158,9 @@ impl Ground<'_> {
     ) -> Result<Result<FlowedPart, String>, Cancelled> {
         let part = progress.part("flow", 0.0, 0.75);
         let settings = attempt.settings(&self.style);
-        let found = clock.step("flow", || told(find(&self.even, &settings, &part)))?;
+        let found = clock.step("flow", || {
+            told(find((&self.even, &self.marked), &settings, &part))
+        })?;
         let (found, covered) = match found {
             Ok(found) => found,
             Err(reason) => return Ok(Err(reason)),
@@ -212,13 +217,14 @@ fn told<T>(result: Result<T, pipeline::Error>) -> Result<Result<T, String>, Canc
     }
 }
 
-/// An even triangle mesh of the target with its own map to the sphere.
+/// An even triangle mesh of the target with its own map to the sphere, and its edges that lie along
+/// the target's sharp or marked ones.
 fn even(
     map: &SphereMap,
     target: &Target,
     (n_quads, seed): (usize, u64),
     progress: &Progress<'_>,
-) -> Result<(SphereMap, sphere::Report), pipeline::Error> {
+) -> Result<(SphereMap, HalfedgeMap<bool>, sphere::Report), pipeline::Error> {
     let n_faces = LEAST_TRIANGLES
         .min(MOST_TRIANGLES_PER_QUAD * n_quads)
         .max(TRIANGLES_PER_QUAD * n_quads);
@@ -231,10 +237,21 @@ fn even(
     let Adaptive { primitive, report } = sphere::adaptive(map, &settings, &part)?;
     let part = progress.part("", 0.7, 1.0);
     let settings = deform::Settings::default();
-    let Deformed { mesh, sphere, .. } = deform::deform(map, &primitive, target, &settings, &part)?;
-    let sphere = VertexMap::from_vec(sphere);
-    let map = SphereMap::prove(triangles(&mesh), sphere).map_err(embed::Error::from)?;
-    Ok((map, report))
+    let deformed = deform::deform(map, &primitive, target, &settings, &part)?;
+    let mesh = triangles(&deformed.mesh);
+    let marked = either_side(&mesh, &deformed.features);
+    let sphere = VertexMap::from_vec(deformed.sphere);
+    let map = SphereMap::prove(mesh, sphere).map_err(embed::Error::from)?;
+    Ok((map, marked, report))
+}
+
+/// Edges as halfedges on both sides of each.
+fn either_side(mesh: &TriangleMesh, edges: &[[VertexId; 2]]) -> HalfedgeMap<bool> {
+    let is_marked = |h| {
+        let [a, b] = [mesh.origin(h), mesh.target(h)];
+        edges.binary_search(&[a.min(b), a.max(b)]).is_ok()
+    };
+    mesh.halfedge_ids().map(is_marked).collect()
 }
 
 fn triangles(mesh: &PolygonMesh) -> TriangleMesh {
@@ -248,11 +265,11 @@ fn triangles(mesh: &PolygonMesh) -> TriangleMesh {
 
 /// The flow of a surface, laid on its sphere.
 fn find(
-    map: &SphereMap,
+    (map, marked): (&SphereMap, &HalfedgeMap<bool>),
     settings: &flow::Settings,
     progress: &Progress<'_>,
 ) -> Result<(flow::Flow, Covered), pipeline::Error> {
-    let found = flow::flow(map, settings, &progress.part("", 0.0, 0.95))?;
+    let found = flow::flow(map, marked, settings, &progress.part("", 0.0, 0.95))?;
     let covered = embed::cover(&found.mesh, &found.sphere, &progress.part("", 0.95, 1.0))?;
     Ok((found, covered))
 }

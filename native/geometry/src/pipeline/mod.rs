@@ -13,6 +13,7 @@ mod error;
 mod flow;
 mod frame;
 mod join;
+mod marks;
 mod part;
 mod report;
 mod settings;
@@ -29,7 +30,7 @@ pub use verbs::{Decimated, EmbedReport, EmbeddedParts, decimate, embed};
 use glam::DVec3;
 
 use crate::embed::OffsetPredictor;
-use crate::mesh::PolygonMesh;
+use crate::mesh::{PolygonMesh, VertexId};
 use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
 use crate::score::{self, Score};
@@ -37,6 +38,7 @@ use crate::{measure, transfer};
 use clock::Clock;
 use frame::Prepared;
 use join::Joined;
+use marks::Marks;
 use part::{PartJob, Wanted};
 
 /// The version of Orbflow.
@@ -52,6 +54,9 @@ pub struct Input<'a> {
     /// The same mesh, already reduced by somebody else; used where it is closed, in one piece and
     /// of the same Euler number, and said in the report otherwise.
     pub reduced: Option<&'a PolygonMesh>,
+    /// Edges of the mesh, by their ends, along which the result is to have edges however flat the
+    /// surface is there.
+    pub marked: &'a [[VertexId; 2]],
 }
 
 impl<'a> Input<'a> {
@@ -61,6 +66,7 @@ impl<'a> Input<'a> {
             mesh,
             materials: None,
             reduced: None,
+            marked: &[],
         }
     }
 }
@@ -106,8 +112,9 @@ fn run(
     let mut clock = Clock::default();
     let stage = progress.part("clean", 0.0, 0.02);
     let prepared = clock.step("clean", || Prepared::new(input.mesh, &stage))?;
+    let marks = Marks::new(&input, &prepared.frame)?;
     let joined = run_parts(
-        &prepared,
+        (&prepared, &marks),
         input.reduced,
         settings,
         (predictor, progress),
@@ -155,7 +162,7 @@ fn run(
 
 /// Does every part by itself and joins them.
 fn run_parts(
-    prepared: &Prepared,
+    (prepared, marks): (&Prepared, &Marks),
     reduced: Option<&PolygonMesh>,
     settings: &Settings,
     (predictor, progress): (&dyn OffsetPredictor, &Progress<'_>),
@@ -180,6 +187,7 @@ fn run_parts(
                 settings,
                 predictor,
                 reduced: reduced.as_ref(),
+                marks,
             },
         };
         results.push(job.run(clock, &progress)?);

@@ -7,12 +7,13 @@ use glam::DVec3;
 use super::Error;
 use super::clock::Clock;
 use super::flow::{Flowed, flow_part};
+use super::marks::Marks;
 use super::report::{PartReport, Reduced};
 use super::settings::{Kind, Primitive, Settings};
 use crate::embed::{Embedded, OffsetPredictor};
 use crate::hierarchy::CollapseHierarchy;
 use crate::mesh::{PolygonMesh, TriangleMesh, VertexId};
-use crate::progress::Progress;
+use crate::progress::{Cancelled, Progress};
 use crate::sphere::Adaptive;
 use crate::sphere_map::SphereMap;
 use crate::{decimate, deform, embed, measure, sphere};
@@ -37,6 +38,7 @@ pub struct Wanted<'a> {
     pub predictor: &'a dyn OffsetPredictor,
     /// The part as somebody else reduced it.
     pub reduced: Option<&'a PolygonMesh>,
+    pub marks: &'a Marks,
 }
 
 /// What has become of a part.
@@ -67,7 +69,7 @@ impl PartJob<'_> {
             Ok::<_, Error>((hierarchy, embedded))
         })?;
         let embedding = embedded.report;
-        let target = clock.step("deform", || deform::Target::new(part, progress))?;
+        let target = clock.step("deform", || wanted.target(part, progress))?;
         let stage = progress.part("", 0.5, 1.0);
         let made = wanted.make((&hierarchy, embedded.map), &target, clock, &stage)?;
         let report = PartReport {
@@ -129,6 +131,19 @@ impl Wanted<'_> {
             flow,
             sphere: placed.report,
         })
+    }
+
+    /// The part with the edges that the result is to have too.
+    fn target(
+        &self,
+        part: TriangleMesh,
+        progress: &Progress<'_>,
+    ) -> Result<deform::Target, Cancelled> {
+        progress.check()?;
+        let sharp = measure::sharp_edges(&part, self.settings.sharp_angle.to_radians());
+        let marked = self.marks.on(&part);
+        let either = sharp.iter().zip(marked.iter()).map(|(a, b)| a | b);
+        deform::Target::with_features(part, &either.collect(), progress)
     }
 
     /// Brings the part down to the size of the map.

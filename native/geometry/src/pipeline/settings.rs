@@ -94,7 +94,7 @@ impl Default for Style {
 
 impl Style {
     /// What the flow of so many quads is asked for.
-    pub(super) fn flow(self, n_quads: usize) -> flow::Settings {
+    fn flow(self, n_quads: usize) -> flow::Settings {
         let mut settings = flow::Settings::new(n_quads);
         settings.field.alignment = 0.5 * 4.0_f64.powf(self.follow_shape);
         settings.sizes.adaptivity = 2.0 * self.adaptivity;
@@ -128,6 +128,9 @@ pub struct Settings {
     pub primitive: Option<Primitive>,
     /// How quads flow; nothing else asks for it.
     pub style: Style,
+    /// Edges at which the surface turns by more than so many degrees, from 0 to 180, get edges of
+    /// the result along them; 180 keeps none but those that are marked.
+    pub sharp_angle: f64,
     /// Where the adaptive primitive's samples start; equal seeds give equal bytes.
     pub seed: u64,
     /// How many threads to use; 0 uses every core. The result does not depend on it.
@@ -144,6 +147,7 @@ impl Default for Settings {
             kind: Kind::Quads,
             primitive: None,
             style: Style::default(),
+            sharp_angle: 40.0,
             seed: 0,
             threads: 0,
             score: None,
@@ -158,6 +162,14 @@ impl Settings {
             Kind::Triangles => Primitive::Adaptive,
             Kind::Quads => Primitive::Flow,
         })
+    }
+
+    /// What the flow of so many quads is asked for.
+    pub(super) fn flow(&self, n_quads: usize) -> flow::Settings {
+        flow::Settings {
+            sharp_angle: Some(self.sharp_angle.to_radians()),
+            ..self.style.flow(n_quads)
+        }
     }
 
     /// How the result is scored, with the target in quads: two triangles count as one.
@@ -175,6 +187,10 @@ impl Settings {
     pub(super) fn check(&self) -> Result<(), Error> {
         check_faces(self.faces)?;
         self.style.check()?;
+        let degrees = self.sharp_angle;
+        if !(0.0..=180.0).contains(&degrees) {
+            return Err(Error::AngleOutOfRange { degrees });
+        }
         let primitive = self.primitive();
         if primitive.kind() == self.kind {
             return Ok(());
@@ -199,7 +215,7 @@ mod tests {
 
     #[test]
     fn styles_go_from_0_to_1_and_the_default_is_the_flow_s() {
-        assert_eq!(Style::default().flow(700), flow::Settings::new(700));
+        assert_eq!(Settings::default().flow(700), flow::Settings::new(700));
         for adaptivity in [-0.1, 1.1, f64::NAN] {
             let style = Style {
                 adaptivity,
@@ -228,6 +244,18 @@ mod tests {
             message,
             "the quad-sphere primitive makes quads, but triangles were asked for"
         );
+    }
+
+    #[test]
+    fn a_sharp_angle_out_of_range_is_refused() {
+        for sharp_angle in [-1.0, 180.5, f64::NAN] {
+            let settings = Settings {
+                sharp_angle,
+                ..Settings::default()
+            };
+            let refused = matches!(settings.check(), Err(Error::AngleOutOfRange { .. }));
+            assert!(refused, "{sharp_angle}");
+        }
     }
 
     #[test]

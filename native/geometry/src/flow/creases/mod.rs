@@ -13,7 +13,7 @@ mod rows;
 mod seams;
 
 use crate::flow::field::OrientationField;
-use crate::measure::{angle_between, dihedral_angle};
+use crate::measure::angle_between;
 use crate::mesh::{HalfedgeId, HalfedgeMap, TriangleMesh, VertexId, VertexMap};
 
 pub use attract::attract;
@@ -23,13 +23,6 @@ pub use seams::{goals, seams};
 
 /// A line that turns by more than this at a vertex has a corner there (53°).
 const CORNER_ANGLE: f64 = 0.927;
-
-/// The edges whose faces' normals differ by more than an angle, on both sides of each.
-pub fn sharp_edges(mesh: &TriangleMesh, angle: f64) -> HalfedgeMap<bool> {
-    mesh.halfedge_ids()
-        .map(|h| dihedral_angle(mesh, h) > angle)
-        .collect()
-}
 
 /// The vertices at which lines of sharp edges branch, stop or turn sharply.
 pub fn corners(mesh: &TriangleMesh, sharp: &HalfedgeMap<bool>) -> VertexMap<bool> {

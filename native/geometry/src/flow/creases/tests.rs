@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::flow::field::{Settings, orient};
-use crate::measure::total_area;
+use crate::measure::{sharp_edges, total_area};
 use crate::mesh::FaceMap;
 use crate::progress::Progress;
 use crate::shapes;
