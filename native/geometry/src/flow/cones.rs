@@ -48,7 +48,6 @@ pub fn keep_cones(
     }
     complex.compact();
     complex.delaunay();
-    complex.shorten_paths();
     Ok(complex)
 }
 

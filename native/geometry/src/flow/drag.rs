@@ -8,7 +8,7 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use std::sync::Arc;
 
-use super::complex::{Complex, LocatedPoints, Paths, Turn};
+use super::complex::{Chains, Complex, LocatedPoints, Turn};
 use super::periods::Periods;
 use crate::mesh::Id;
 
@@ -50,7 +50,7 @@ impl State {
     pub fn new(complex: &Complex, periods: Periods) -> Self {
         let mut complex = complex.clone();
         complex.located = LocatedPoints::new(complex.n_faces());
-        complex.paths = Paths::default();
+        complex.chains = Chains::default();
         Self {
             complex,
             periods,

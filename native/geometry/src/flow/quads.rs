@@ -22,10 +22,6 @@ use crate::mesh::{FaceMap, HalfedgeMap, PolygonMesh, PolygonMeshError, TriangleM
 use crate::progress::{Cancelled, Progress};
 use crate::sphere_map::SphereMap;
 
-/// More quads than this do without lines: on the finer surface that they need, a line can grow
-/// without bound while it is followed through flips (the boat at 8,000).
-const MOST_WITH_LINES: usize = 4_000;
-
 /// What to make.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Settings {
@@ -317,8 +313,7 @@ fn dress(
     let h = (total_area(mesh) / settings.n_quads.max(1) as f64).sqrt();
     let all = creases::lines(mesh, &field, &sharp, h);
     let on_lines = all.iter().map(|line| line.length(mesh)).sum();
-    let are_clear =
-        settings.n_quads <= MOST_WITH_LINES && creases::are_clear(mesh, &sharp, on_lines);
+    let are_clear = creases::are_clear(mesh, &sharp, on_lines);
     if are_clear {
         creases::attract(mesh, &mut field, &sharp, sizes);
     }

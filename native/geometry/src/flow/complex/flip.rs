@@ -85,7 +85,8 @@ impl Complex {
         );
         self.align(h);
         let moves = flip_moves(h, t);
-        self.paths.detour([h, t], &moves);
+        self.detour(h);
+        self.chains.move_all(&moves);
         let [c, d] = [self.origins[h.prev()], self.origins[t.prev()]];
         move_values(&mut self.origins, &moves);
         move_values(&mut self.turns, &moves);
@@ -103,6 +104,8 @@ impl Complex {
         for e in [h, h.next(), h.prev(), t, t.next(), t.prev()] {
             self.outgoing[self.origins[e]] = e;
         }
+        self.tighten(h);
+        self.tighten(t);
     }
 
     pub(super) fn move_twins(&mut self, moves: &[(HalfedgeId, HalfedgeId)]) {

@@ -6,11 +6,11 @@
 //! Δ-complex): what is left when a mesh is reduced to its cones. Edges flip; everything that
 //! hangs on a halfedge goes along, because each of it is linear in the vectors.
 
+mod chains;
 mod check;
 mod delaunay;
 mod flip;
 mod located;
-mod paths;
 mod remove;
 mod rows;
 mod turn;
@@ -19,10 +19,10 @@ use glam::DVec2;
 
 use crate::mesh::{FaceId, HalfedgeId, HalfedgeMap, Id, TriangleMesh, VertexId, VertexMap};
 
+pub use chains::Chains;
 pub use check::BrokenComplex;
 pub(in crate::flow) use flip::{flip_moves, move_values};
 pub use located::{Located, LocatedPoints};
-pub use paths::{Paths, Step};
 pub use rows::Rows;
 pub use turn::Turn;
 
@@ -56,7 +56,7 @@ pub struct Complex {
     /// Vertices of the mesh that lie inside faces.
     pub located: LocatedPoints,
     /// Lines along edges, which flips lead round what they take away.
-    pub paths: Paths,
+    pub chains: Chains,
 }
 
 /// What a complex carries from the orientation field.
@@ -94,7 +94,7 @@ impl Complex {
                 .collect(),
             original: mesh.vertex_ids().collect(),
             located: LocatedPoints::new(mesh.n_faces()),
-            paths: Paths::default(),
+            chains: Chains::default(),
         }
     }
 
@@ -186,7 +186,7 @@ impl Complex {
             self.turns[h] = (self.turns[h] + 4 - turns % 4) % 4;
             self.turns[twin] = (self.turns[twin] + turns) % 4;
         }
-        self.paths.turn_face(face, turns);
+        self.chains.turn_face(face, turns);
     }
 
     /// Turns the frame of the face across a halfedge so that both faces agree along it.

@@ -21,7 +21,8 @@ impl Complex {
         // The outer sides take the places of the one face that stays.
         let slots = [h, h.next(), h.prev()];
         let moves = [0, 1, 2].map(|i| (spokes[i].next(), slots[i]));
-        self.paths.bypass(spokes, &moves);
+        self.bypass(spokes);
+        self.chains.move_all(&moves);
         self.replace_face(&moves);
         for e in [second, third] {
             for side in [e, e.next(), e.prev()] {
@@ -94,7 +95,7 @@ impl Complex {
         self.wish = kept_values(&self.wish, &faces, |w| w);
         self.coefficients.keep_faces(&faces);
         self.located.keep_faces(&faces);
-        self.paths.rename(moved, self.twins.len());
+        self.chains.keep_faces(&faces);
         self.indices = vertices.iter().map(|&v| self.indices[v]).collect();
         self.outgoing = vertices.iter().map(|&v| moved(self.outgoing[v])).collect();
         self.original = vertices.iter().map(|v| self.original[v.index()]).collect();

@@ -2,10 +2,10 @@
 
 use std::collections::HashMap;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::Line;
-use crate::flow::complex::{Complex, Step};
+use crate::flow::complex::Complex;
 use crate::measure::{Polyline, Seam};
 use crate::mesh::{Id, TriangleMesh, VertexId};
 
@@ -25,7 +25,7 @@ const LEAST_GAP: f64 = 0.3;
 
 /// The seam of every line that runs along an axis of a whole metric; it may touch singularities.
 ///
-/// `lines` are those of `complex.paths` as they were on the mesh, `positions` first ones of the
+/// `lines` are those of `complex.chains` as they were on the mesh, `positions` first ones of the
 /// quads' vertices. Of the ways that arrive the nearest is taken. A vertex inside one seam is in no
 /// other.
 pub fn seams(
@@ -37,9 +37,10 @@ pub fn seams(
     let walker = Walker::new(quads, positions.len());
     let mut is_taken = vec![false; positions.len()];
     let mut seams = Vec::new();
-    for (line, path) in lines.iter().zip(complex.paths.lines()) {
+    for (i, line) in lines.iter().enumerate() {
+        let span = complex.sum_along(i, &complex.start);
+        let walks = walker.along(span, ends(complex, line)).into_iter();
         let line = polyline(mesh, line);
-        let walks = walker.along(complex, path).into_iter();
         let laid = walks.map(|walk| lay(&line, &walk, positions));
         let best = laid.reduce(|a, b| if b.0 < a.0 { b } else { a });
         let Some((_, seam)) = best.filter(|(miss, seam)| is_near(seam, *miss)) else {
@@ -89,12 +90,8 @@ impl Walker {
         walker
     }
 
-    /// All straight walks as long as a path and from its first end to its last.
-    fn along(&self, complex: &Complex, path: &[Step]) -> Vec<Vec<u32>> {
-        let Some([first, last]) = complex.ends(path).map(|ends| ends.map(|v| v.0)) else {
-            return Vec::new();
-        };
-        let span = complex.sum_along(path, &complex.start);
+    /// All straight walks as long as a line's span and from its first end to its last.
+    fn along(&self, span: DVec2, [first, last]: [u32; 2]) -> Vec<Vec<u32>> {
         let n = span.length().round() as usize;
         if span.abs().min_element() > ON_AXIS || n == 0 {
             return Vec::new();
@@ -134,6 +131,14 @@ impl Walker {
         }
         Some(walk)
     }
+}
+
+/// The vertices of the grid at the ends of a line: a complex keeps the order of those it keeps.
+fn ends(complex: &Complex, line: &Line) -> [u32; 2] {
+    line.ends.map(|end| {
+        let at = complex.original.binary_search(&end);
+        at.expect("the ends of lines are kept") as u32
+    })
 }
 
 /// The line on the surface.
