@@ -41,6 +41,9 @@ pub enum Command {
     /// Measure the edge flow of a mesh and its distance to another
     #[command(after_help = AFTER_HELP)]
     Score(Score),
+    /// Train weights of the graph network, or go on where training was cut
+    #[cfg(feature = "train")]
+    Train(crate::train::Train),
 }
 
 #[derive(Args, Debug)]
@@ -238,6 +241,8 @@ impl Arguments {
                 )?;
                 ([None, None], a.report.as_ref(), None)
             }
+            #[cfg(feature = "train")]
+            Command::Train(_) => ([None, None], None, None),
         };
         for mesh in meshes.into_iter().flatten() {
             if output_format(mesh, wanted).is_none() {

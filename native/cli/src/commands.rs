@@ -22,6 +22,8 @@ pub fn run(command: &Command) -> Result<(), Error> {
         Command::Embed(arguments) => embed(arguments, &interrupt),
         Command::Decimate(arguments) => decimate(arguments, &interrupt),
         Command::Score(arguments) => score(arguments, &interrupt),
+        #[cfg(feature = "train")]
+        Command::Train(arguments) => Ok(crate::train::train(arguments, &interrupt)?),
     }
 }
 

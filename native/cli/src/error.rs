@@ -35,6 +35,10 @@ pub enum Error {
     /// The report cannot be put in words.
     #[error("cannot write the report: {0}")]
     Report(#[from] serde_json::Error),
+    /// Training ends early.
+    #[cfg(feature = "train")]
+    #[error(transparent)]
+    Train(#[from] crate::train::Error),
     /// The signal handler cannot be set.
     #[error("cannot watch for ctrl-c: {0}")]
     Signal(#[from] ctrlc::Error),
@@ -46,11 +50,16 @@ pub enum Error {
 impl Error {
     /// The code that the program ends with.
     pub fn exit_code(&self) -> ExitCode {
-        ExitCode::from(if matches!(self, Self::Cancelled(_)) {
-            CANCELLED
-        } else {
-            3
-        })
+        ExitCode::from(if self.is_cancelled() { CANCELLED } else { 3 })
+    }
+
+    fn is_cancelled(&self) -> bool {
+        match self {
+            Self::Cancelled(_) => true,
+            #[cfg(feature = "train")]
+            Self::Train(error) => error.is_cancelled(),
+            _ => false,
+        }
     }
 
     /// An error of the pipeline on the mesh from `place`.

@@ -11,6 +11,8 @@ mod inputs;
 mod interrupt;
 mod outputs;
 mod place;
+#[cfg(feature = "train")]
+mod train;
 
 use std::process::ExitCode;
 

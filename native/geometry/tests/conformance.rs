@@ -3,17 +3,13 @@
 
 mod common;
 
+use common::conformance::{check, hierarchies};
 use glam::DVec3;
-use orbflow_geometry::decimate::collapse_to_tetrahedron;
-use orbflow_geometry::embed::{
-    Embedded, OffsetPredictor, PredictError, Proposal, RepairReport, Report, Settings, Solver,
-    embed,
-};
+use orbflow_geometry::embed::{OffsetPredictor, PredictError, Proposal, Settings, Solver, embed};
 use orbflow_geometry::hierarchy::CollapseHierarchy;
 use orbflow_geometry::mesh::{Id, VertexMap};
 use orbflow_geometry::progress::Progress;
 use orbflow_geometry::random::Random;
-use orbflow_geometry::sphere_map::{degree, folded_faces};
 
 /// A predictor that bends what the solver proposes: `bend` maps the points of a valid map.
 struct Bent(&'static str, fn(usize, DVec3) -> DVec3);
@@ -32,6 +28,7 @@ impl OffsetPredictor for Bent {
         let bent = sphere.iter_ids().map(|(v, &p)| self.1(v.index(), p));
         Ok(Proposal {
             sphere: bent.collect(),
+            n_proposed: hierarchy.n_vertices(),
             n_relaxations: 0,
         })
     }
@@ -79,6 +76,28 @@ const BENT: &[Bent] = &[
     Bent("twice around", |_, p| twice_around(p)),
 ];
 
+/// What another predictor proposes, for a coarse level alone.
+struct Coarse<'a>(&'a Bent, usize);
+
+impl OffsetPredictor for Coarse<'_> {
+    fn name(&self) -> &'static str {
+        "coarse"
+    }
+
+    fn propose(
+        &self,
+        hierarchy: &CollapseHierarchy,
+        progress: &Progress,
+    ) -> Result<Proposal, PredictError> {
+        let proposal = self.0.propose(hierarchy, progress)?;
+        let n_proposed = self.1;
+        Ok(Proposal {
+            n_proposed,
+            ..proposal
+        })
+    }
+}
+
 /// Too few points, or too many.
 struct Miscounted(usize);
 
@@ -87,39 +106,13 @@ impl OffsetPredictor for Miscounted {
         "miscounted"
     }
 
-    fn propose(&self, _: &CollapseHierarchy, _: &Progress) -> Result<Proposal, PredictError> {
+    fn propose(&self, of: &CollapseHierarchy, _: &Progress) -> Result<Proposal, PredictError> {
         Ok(Proposal {
             sphere: VertexMap::filled(self.0, DVec3::Z),
+            n_proposed: of.n_vertices(),
             n_relaxations: 0,
         })
     }
-}
-
-fn hierarchies() -> Vec<(&'static str, CollapseHierarchy)> {
-    let collapse =
-        |mesh| collapse_to_tetrahedron(mesh, &Progress::none()).expect("the shapes are closed");
-    let shapes = common::closed(7).into_iter();
-    shapes.map(|(name, mesh)| (name, collapse(mesh))).collect()
-}
-
-/// What every predictor must lead to.
-fn check(hierarchy: &CollapseHierarchy, predictor: &dyn OffsetPredictor) -> Report {
-    let settings = Settings::default();
-    let Embedded { map, report } = embed(hierarchy, predictor, &settings, &Progress::none())
-        .expect("every proposal is repaired");
-    let faces = hierarchy.mesh().faces();
-    assert!(folded_faces(faces, map.sphere()).is_empty());
-    assert_eq!(degree(faces, map.sphere()), 1);
-    assert_eq!((report.n_folds, report.degree), (0, 1));
-    assert_eq!(report.n_vertices, hierarchy.n_vertices());
-    assert_eq!(report.predictor, predictor.name());
-    assert!(report.energy.is_finite() && report.proposal.energy.is_finite());
-    assert!((0.0..=100.0).contains(&report.proposal.folds_pct));
-    assert!(report.n_relaxations >= report.proposal.n_relaxations);
-    let was_valid = report.proposal.n_folds == 0 && report.proposal.degree == 1;
-    let untouched = report.repair == RepairReport::default();
-    assert_eq!(was_valid, untouched, "{report:?}");
-    report
 }
 
 #[test]
@@ -143,6 +136,20 @@ fn nonsense_still_ends_in_a_valid_map() {
         }
         for n in [0, 1, hierarchy.n_vertices() + 5] {
             assert!(check(&hierarchy, &Miscounted(n)).repair.fell_back_to_solver);
+        }
+    }
+}
+
+#[test]
+fn a_proposal_for_a_coarse_level_is_grown_to_a_valid_map() {
+    for (name, hierarchy) in hierarchies() {
+        let reference = check(&hierarchy, &Solver::default());
+        for bent in BENT {
+            for n_coarse in [0, 4, 30, hierarchy.n_vertices() / 2] {
+                let report = check(&hierarchy, &Coarse(bent, n_coarse));
+                let message = format!("{name} {} at {n_coarse}: {report:?}", bent.0);
+                assert!(report.energy < reference.energy + 0.05, "{message}");
+            }
         }
     }
 }

@@ -7,6 +7,7 @@
 //! (Praun & Hoppe 2003, with the symmetric Dirichlet energy of Smith & Schaefer 2015); it is the
 //! baseline, and what is done when a proposal cannot be repaired.
 
+mod coarse;
 mod cover;
 mod energy;
 mod fan;
@@ -27,7 +28,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::hierarchy::CollapseHierarchy;
-use crate::mesh::VertexMap;
+use crate::mesh::{TriangleMesh, VertexMap};
 use crate::progress::{Cancelled, Progress};
 use crate::sphere_map::{NotABijection, SphereMap, folded_faces};
 pub use cover::{CoverError, CoverReport, Covered, cover};
@@ -46,7 +47,7 @@ pub trait OffsetPredictor: Sync {
     /// The name that reports carry.
     fn name(&self) -> &str;
 
-    /// Proposes a point for every vertex of the finest mesh.
+    /// Proposes a point for every vertex, or for those of a coarse level.
     ///
     /// # Errors
     /// [`PredictError`].
@@ -60,8 +61,11 @@ pub trait OffsetPredictor: Sync {
 /// What a predictor proposes.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Proposal {
-    /// A direction for every vertex of the finest mesh; of any length, x − offset.
+    /// A direction for every proposed vertex; of any length, x − offset.
     pub sphere: VertexMap<DVec3>,
+    /// How many vertices are proposed, counted from the coarsest
+    /// ([`coarse_to_fine`](CollapseHierarchy::coarse_to_fine)). The solver grows the others.
+    pub n_proposed: usize,
     /// How many relaxations of single vertices the predictor did.
     pub n_relaxations: u64,
 }
@@ -190,12 +194,12 @@ fn embed_in_pool(
 ) -> Result<Embedded, Error> {
     let mesh = hierarchy.mesh();
     let proposed = predictor.propose(hierarchy, &progress.part("", 0.0, 0.7))?;
-    let sphere = unit_vectors(&proposed, mesh.n_vertices());
-    let proposal = ProposalReport::new(mesh, &sphere, proposed.n_relaxations, progress)?;
-    let mut valid = Valid::new(sphere, proposed.n_relaxations);
-    if !proposal.is_valid() {
-        valid.repair(hierarchy, proposal.n_folds, &progress.part("", 0.7, 0.9))?;
-    }
+    let mending = progress.part("", 0.7, 0.9);
+    let (valid, proposal) = if proposed.n_proposed < mesh.n_vertices() {
+        coarse::grown(hierarchy, &proposed, &mending)?
+    } else {
+        mended(hierarchy, &proposed, &mending)?
+    };
     let finish = finish(
         mesh,
         valid.sphere,
@@ -218,6 +222,22 @@ fn embed_in_pool(
         repair: valid.report,
     };
     Ok(Embedded { map, report })
+}
+
+/// A proposal for all vertices, made valid.
+fn mended(
+    hierarchy: &CollapseHierarchy,
+    proposed: &Proposal,
+    progress: &Progress,
+) -> Result<(Valid, ProposalReport), Error> {
+    let mesh = hierarchy.mesh();
+    let sphere = unit_vectors(proposed, mesh.n_vertices());
+    let report = ProposalReport::new(mesh, &sphere, proposed.n_relaxations, progress)?;
+    let mut valid = Valid::new(sphere, proposed.n_relaxations);
+    if !report.is_valid() && !valid.mend(mesh, report.n_folds, &progress.part("", 0.0, 0.5))? {
+        valid.fall_back(hierarchy, &progress.part("", 0.5, 1.0))?;
+    }
+    Ok((valid, report))
 }
 
 /// Lays a mesh on the sphere by the solver alone, so that areas are kept rather than angles.
@@ -257,15 +277,14 @@ impl Valid {
         }
     }
 
-    /// Makes the map valid: turned inside out where that helps, repaired where it can be, else
-    /// replaced by the solver's.
-    fn repair(
+    /// Makes a map of a mesh valid: turned inside out where that helps, repaired where it can be.
+    /// False where it cannot.
+    fn mend(
         &mut self,
-        hierarchy: &CollapseHierarchy,
+        mesh: &TriangleMesh,
         n_folds: usize,
         progress: &Progress,
-    ) -> Result<(), Error> {
-        let mesh = hierarchy.mesh();
+    ) -> Result<bool, Cancelled> {
         let mut sphere = std::mem::replace(&mut self.sphere, VertexMap::from_vec(Vec::new()));
         // A mirrored map is folded everywhere, and right again after s → −s.
         let turned: VertexMap<DVec3> = sphere.iter().map(|&p| -p).collect();
@@ -273,22 +292,26 @@ impl Valid {
             self.report.mirrored = true;
             sphere = turned;
         }
-        if let Some(repaired) = repair::repair(
-            mesh,
-            sphere,
-            repair::SMOOTHING,
-            &progress.part("", 0.0, 0.5),
-        )? {
-            self.n_relaxations += repaired.n_relaxations;
-            self.report.n_moved = repaired.n_moved;
-            self.sphere = repaired.sphere;
-            return Ok(());
-        }
+        let Some(repaired) = repair::repair(mesh, sphere, repair::SMOOTHING, progress)? else {
+            return Ok(false);
+        };
+        self.n_relaxations += repaired.n_relaxations;
+        self.report.n_moved = repaired.n_moved;
+        self.sphere = repaired.sphere;
+        Ok(true)
+    }
+
+    /// Gives the proposal up for the solver's own map.
+    fn fall_back(
+        &mut self,
+        hierarchy: &CollapseHierarchy,
+        progress: &Progress,
+    ) -> Result<(), Error> {
         self.report = RepairReport {
             fell_back_to_solver: true,
             ..RepairReport::default()
         };
-        let own = Solver::default().propose(hierarchy, &progress.part("", 0.5, 1.0))?;
+        let own = Solver::default().propose(hierarchy, progress)?;
         self.n_relaxations += own.n_relaxations;
         self.sphere = own.sphere;
         Ok(())

@@ -66,13 +66,14 @@ impl Solver {
             }),
             Ok(()) => Ok(Proposal {
                 n_relaxations: n_relaxations + growth.n_relaxations,
+                n_proposed: hierarchy.n_vertices(),
                 sphere: growth.partial.sphere,
             }),
         }
     }
 
-    /// Undoes every round, with sweeps each time the number of vertices has grown enough.
-    fn grow(
+    /// Undoes what is left to undo, with sweeps each time the number of vertices has grown enough.
+    pub(super) fn grow(
         self,
         hierarchy: &CollapseHierarchy,
         growth: &mut Growth,
@@ -80,11 +81,13 @@ impl Solver {
     ) -> Result<(), GrowError> {
         let n_vertices = hierarchy.n_vertices();
         let mut n_relaxed = 4;
+        let n_left = n_vertices - growth.partial.n_there();
         for round in (0..hierarchy.n_rounds()).rev() {
-            let collapses: Vec<_> = hierarchy
-                .round(round)
-                .map(|i| hierarchy.collapse(i))
-                .collect();
+            let left = hierarchy.round(round).filter(|&i| i < n_left);
+            let collapses: Vec<_> = left.map(|i| hierarchy.collapse(i)).collect();
+            if collapses.is_empty() {
+                continue;
+            }
             growth.insert_all(&collapses, progress)?;
             let n_there = growth.partial.n_there();
             let (factor, max_sweeps) = if n_there < 1_000 {

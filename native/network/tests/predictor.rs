@@ -1,0 +1,168 @@
+//! The network as a predictor: conformance, symmetry, and its file.
+
+#[path = "../../geometry/tests/common/mod.rs"]
+mod common;
+
+use common::conformance::{check, hierarchies};
+use glam::{DMat3, DVec3};
+use orbflow_geometry::decimate::collapse_to_tetrahedron;
+use orbflow_geometry::embed::{OffsetPredictor, Proposal};
+use orbflow_geometry::mesh::TriangleMesh;
+use orbflow_geometry::progress::{CancelToken, Progress};
+use orbflow_geometry::random::Random;
+use orbflow_network::NetworkPredictor;
+use orbflow_network::features::N_FEATURES;
+use orbflow_network::net::Sizes;
+use orbflow_network::weights::{Header, ReadWeightsError, Weights};
+
+/// A small network with random weights.
+fn weights() -> Weights {
+    let sizes = Sizes {
+        width: 16,
+        levels: vec![200, 60, 20],
+        blocks: vec![1, 1, 2],
+    };
+    let mut random = Random::new(3);
+    let n = sizes.n_parameters().unwrap();
+    Weights {
+        parameters: (0..n).map(|_| (random.unit() - 0.5) as f32 * 0.5).collect(),
+        header: Header {
+            sizes,
+            n_features: N_FEATURES,
+            provenance: "random".to_owned(),
+        },
+    }
+}
+
+fn predictor(weights: &Weights) -> NetworkPredictor {
+    NetworkPredictor::new(weights).unwrap()
+}
+
+fn propose(mesh: TriangleMesh) -> Proposal {
+    let hierarchy = collapse_to_tetrahedron(mesh, &Progress::none()).unwrap();
+    let proposed = predictor(&weights()).propose(&hierarchy, &Progress::none());
+    proposed.unwrap()
+}
+
+#[test]
+fn whatever_it_proposes_ends_in_a_valid_map() {
+    for (_, hierarchy) in hierarchies() {
+        check(&hierarchy, &predictor(&weights()));
+    }
+}
+
+#[test]
+fn the_finest_level_is_proposed_and_no_more() {
+    let proposal = propose(common::limbs(4, 9));
+    assert_eq!(proposal.n_proposed, 200);
+    let n_given = proposal.sphere.iter().filter(|p| p.length() > 0.5).count();
+    assert_eq!(n_given, 200);
+}
+
+#[test]
+fn the_same_mesh_gets_the_same_points() {
+    assert_eq!(propose(common::limbs(4, 9)), propose(common::limbs(4, 9)));
+}
+
+#[test]
+fn the_proposal_turns_moves_and_grows_with_the_mesh() {
+    let mesh = common::limbs(4, 9);
+    let turn = DMat3::from_rotation_y(0.8) * DMat3::from_rotation_z(2.2);
+    let places = mesh
+        .positions()
+        .iter()
+        .map(|&p| turn * p * 64.0 + DVec3::new(3.0, -8.0, 1.0));
+    let [still, turned] = [mesh.clone(), mesh.with_positions(places.collect())].map(propose);
+    for (p, q) in still.sphere.iter().zip(turned.sphere.iter()) {
+        assert!((turn * *p).distance(*q) < 1e-3, "{p} {q}");
+    }
+}
+
+#[test]
+fn a_cancelled_prediction_stops() {
+    let hierarchy = collapse_to_tetrahedron(common::blob(1, 6), &Progress::none()).unwrap();
+    let token = CancelToken::new();
+    token.cancel();
+    let cancelled = predictor(&weights()).propose(&hierarchy, &Progress::silent(token));
+    assert!(cancelled.is_err());
+}
+
+#[test]
+fn a_file_gives_the_network_back_in_half_precision() {
+    let saved = weights();
+    let read = Weights::from_bytes(&saved.to_bytes()).unwrap();
+    assert_eq!(read.header, saved.header);
+    for (x, y) in saved.parameters.iter().zip(&read.parameters) {
+        assert!((x - y).abs() <= 5e-4 * x.abs() + 1e-7, "{x} {y}");
+    }
+    // Halves are read exactly.
+    assert_eq!(Weights::from_bytes(&read.to_bytes()).unwrap(), read);
+}
+
+#[test]
+fn wrong_damaged_and_hostile_files_are_refused() {
+    let bytes = weights().to_bytes();
+    let read = |bytes: &[u8]| Weights::from_bytes(bytes).unwrap_err();
+    assert_eq!(read(b"OFF\n"), ReadWeightsError::NotWeights);
+    assert_eq!(read(&[]), ReadWeightsError::NotWeights);
+    let mut newer = bytes.clone();
+    newer[8] = 9;
+    assert_eq!(read(&newer), ReadWeightsError::Version { found: 9 });
+    for n in [9, 31, 32, 100, bytes.len() - 1] {
+        assert!(
+            matches!(read(&bytes[..n]), ReadWeightsError::Length { .. }),
+            "{n}"
+        );
+    }
+    for at in [12, 20, 24, 40, bytes.len() / 2, bytes.len() - 1] {
+        let mut damaged = bytes.clone();
+        damaged[at] ^= 0x11;
+        read(&damaged);
+    }
+}
+
+#[test]
+fn sizes_that_would_eat_the_memory_are_refused() {
+    for (width, levels, blocks) in [
+        (usize::MAX, vec![500], vec![1]),
+        (8, vec![500], vec![usize::MAX]),
+        (8, vec![20, 500], vec![1, 1]),
+        (8, vec![500, 20], vec![1]),
+        (8, vec![], vec![]),
+        (8, vec![500, 0], vec![1, 1]),
+    ] {
+        let mut hostile = weights();
+        hostile.header.sizes = Sizes {
+            width,
+            levels,
+            blocks,
+        };
+        let error = Weights::from_bytes(&hostile.to_bytes()).unwrap_err();
+        let refused = matches!(
+            error,
+            ReadWeightsError::Sizes { .. } | ReadWeightsError::Header { .. }
+        );
+        assert!(refused, "{error}");
+    }
+}
+
+#[test]
+fn parameters_of_another_width_are_refused() {
+    let mut other = weights();
+    other.header.sizes.width = 24;
+    let error = Weights::from_bytes(&other.to_bytes()).unwrap_err();
+    let wanted = other.header.sizes.n_parameters().unwrap();
+    let found = other.parameters.len();
+    assert_eq!(error, ReadWeightsError::Parameters { found, wanted });
+    assert_eq!(NetworkPredictor::new(&other).unwrap_err(), error);
+}
+
+#[test]
+fn parameters_that_are_no_numbers_are_refused() {
+    for poison in [f32::NAN, f32::INFINITY, 1e6] {
+        let mut poisoned = weights();
+        poisoned.parameters[7] = poison;
+        let error = Weights::from_bytes(&poisoned.to_bytes()).unwrap_err();
+        assert_eq!(error, ReadWeightsError::NotFinite { index: 7 });
+    }
+}

@@ -1,0 +1,175 @@
+//! The network of [`orbflow_network::net`] once more, in burn, so that it has gradients.
+//!
+//! Same parts, same order of parameters; a test compares what the two propose.
+
+mod backend;
+pub mod gated;
+
+use std::sync::Arc;
+
+use burn::module::{Initializer, Module, ModuleVisitor, Param};
+use burn::nn::{LayerNorm, LayerNormConfig, Linear, LinearConfig};
+use burn::tensor::{Device, IndexingUpdateOp, Int, Tensor, TensorData, activation};
+use orbflow_network::features::N_FEATURES;
+use orbflow_network::neighbours::Neighbours;
+use orbflow_network::net::{LEAST_SQUARE, Sizes};
+use orbflow_network::pyramid::{Level, Pyramid};
+
+use gated::gated_sum;
+
+/// `x + out(relu(gated sum(norm(x))))`.
+#[derive(Module, Debug)]
+struct Block {
+    norm: LayerNorm,
+    rows: Linear,
+    out: Linear,
+}
+
+/// What one level has.
+#[derive(Module, Debug)]
+struct Storey {
+    enter: Linear,
+    down: Vec<Block>,
+    up: Vec<Block>,
+    join: Linear,
+}
+
+/// The network.
+#[derive(Module, Debug)]
+pub struct BurnNetwork {
+    storeys: Vec<Storey>,
+    norm: LayerNorm,
+    head: Linear,
+}
+
+impl Block {
+    fn new(width: usize, device: &Device) -> Self {
+        Self {
+            norm: LayerNormConfig::new(width).init(device),
+            rows: LinearConfig::new(width, 4 * width).init(device),
+            out: LinearConfig::new(width, width).init(device),
+        }
+    }
+
+    fn forward(&self, x: Tensor<2>, graph: &Arc<Neighbours>) -> Tensor<2> {
+        let rows = self.rows.forward(self.norm.forward(x.clone()));
+        x + self.out.forward(activation::relu(gated_sum(rows, graph)))
+    }
+}
+
+impl BurnNetwork {
+    /// A network with random weights.
+    pub fn new(sizes: &Sizes, device: &Device) -> Self {
+        let width = sizes.width;
+        let blocks = |n: usize| (0..n).map(|_| Block::new(width, device)).collect();
+        let storeys = sizes.blocks.iter().map(|&n| Storey {
+            enter: LinearConfig::new(N_FEATURES, width).init(device),
+            down: blocks(n),
+            up: blocks(n),
+            join: LinearConfig::new(2 * width, width).init(device),
+        });
+        // A small head: the first proposal is the radial projection, nearly.
+        let small = Initializer::Normal {
+            mean: 0.0,
+            std: 1e-2 / (width as f64).sqrt(),
+        };
+        Self {
+            storeys: storeys.collect(),
+            norm: LayerNormConfig::new(width).init(device),
+            head: LinearConfig::new(width, 3)
+                .with_initializer(small)
+                .init(device),
+        }
+    }
+
+    /// All parameters, as [`orbflow_network::net::Network::new`] takes them.
+    pub fn parameters(&self) -> Vec<f32> {
+        struct List(Vec<f32>);
+        impl ModuleVisitor for List {
+            fn visit_float<const D: usize>(&mut self, parameter: &Param<Tensor<D>>) {
+                self.0.extend(numbers(parameter.val()));
+            }
+        }
+        let mut list = List(Vec::new());
+        self.visit(&mut list);
+        list.0
+    }
+
+    /// A direction per vertex of the finest level, in the frame of the pyramid: not normalised.
+    pub fn forward(&self, pyramid: &Pyramid, device: &Device) -> Tensor<2> {
+        let n_levels = self.storeys.len();
+        assert_eq!(
+            n_levels,
+            pyramid.levels.len(),
+            "levels of network and pyramid"
+        );
+        let inputs: Vec<Tensor<2>> = pyramid
+            .levels
+            .iter()
+            .map(|level| features_of(level, device))
+            .collect();
+        let mut kept = Vec::with_capacity(n_levels);
+        let mut x = self.storeys[0].enter.forward(inputs[0].clone());
+        for (i, (storey, level)) in self.storeys.iter().zip(&pyramid.levels).enumerate() {
+            if i > 0 {
+                x = pooled(x, level, device) + storey.enter.forward(inputs[i].clone());
+            }
+            x = storey
+                .down
+                .iter()
+                .fold(x, |x, block| block.forward(x, &level.graph));
+            kept.push(x.clone());
+        }
+        for (i, (storey, level)) in self.storeys.iter().zip(&pyramid.levels).enumerate().rev() {
+            if let Some(coarser) = pyramid.levels.get(i + 1) {
+                x = x.select(0, ids(&coarser.parents, device));
+            }
+            x = storey
+                .join
+                .forward(Tensor::cat(vec![x, kept[i].clone()], 1));
+            x = storey
+                .up
+                .iter()
+                .fold(x, |x, block| block.forward(x, &level.graph));
+        }
+        let radial = inputs[0].clone().narrow(1, 0, 3);
+        let radius = radial
+            .clone()
+            .powi_scalar(2)
+            .sum_dim(1)
+            .add_scalar(LEAST_SQUARE)
+            .sqrt();
+        radial / radius + self.head.forward(self.norm.forward(x))
+    }
+}
+
+/// The numbers of a tensor, by rows.
+pub fn numbers<const D: usize>(tensor: Tensor<D>) -> Vec<f32> {
+    let numbers = tensor.into_data().try_to_vec::<f32>();
+    numbers.expect("the network is f32")
+}
+
+fn features_of(level: &Level, device: &Device) -> Tensor<2> {
+    let shape = [level.graph.n_vertices(), N_FEATURES];
+    Tensor::from_data(TensorData::new(level.features.clone(), shape), device)
+}
+
+fn ids(numbers: &[u32], device: &Device) -> Tensor<1, Int> {
+    let numbers: Vec<i64> = numbers.iter().map(|&n| i64::from(n)).collect();
+    let n = numbers.len();
+    Tensor::from_data(TensorData::new(numbers, [n]), device)
+}
+
+/// The mean over the vertices that collapsed into each vertex of a level, itself among them.
+fn pooled(fine: Tensor<2>, level: &Level, device: &Device) -> Tensor<2> {
+    let [_, width] = fine.dims();
+    let n = level.graph.n_vertices();
+    let mut counts = vec![0.0f32; n];
+    for &parent in &level.parents {
+        counts[parent as usize] += 1.0;
+    }
+    let counts = Tensor::<2>::from_data(TensorData::new(counts, [n, 1]), device);
+    let parents = ids(&level.parents, device);
+    let sums = Tensor::zeros([n, width], device);
+    sums.select_assign(0, parents, fine, IndexingUpdateOp::Add) / counts
+}

@@ -1,0 +1,305 @@
+//! The loop: batches, steps, log, checkpoints.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use burn::grad_clipping::GradientClippingConfig;
+use burn::module::Module;
+use burn::optim::{AdamWConfig, GradientsParams, ModuleOptimizer};
+use burn::store::{ModuleRecord, RecordError};
+use burn::tensor::Device;
+use orbflow_geometry::progress::{Cancelled, Progress};
+use orbflow_geometry::random::Random;
+use orbflow_network::features::N_FEATURES;
+use orbflow_network::frame::half_turns;
+use orbflow_network::net::{Network, Sizes};
+use orbflow_network::pyramid::Pyramid;
+use orbflow_network::weights::{Header, Weights};
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use crate::evaluate::{Figures, evaluate};
+use crate::loss::Faces;
+use crate::net::BurnNetwork;
+use crate::sample::Sample;
+use crate::schedule::one_cycle;
+
+/// How a network is trained.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+pub struct Settings {
+    /// The network.
+    pub sizes: Sizes,
+    /// How many steps the whole run has; the rate follows from it.
+    pub n_steps: usize,
+    /// How many shapes a step sees.
+    pub batch: usize,
+    /// The highest learning rate.
+    pub rate: f64,
+    /// Where random choices start.
+    pub seed: u64,
+    /// Steps between checkpoints, at which the held-out shapes are measured too.
+    pub interval: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            sizes: Sizes::default(),
+            n_steps: 20_000,
+            batch: 6,
+            rate: 2e-3,
+            seed: 0,
+            interval: 500,
+        }
+    }
+}
+
+/// A network on its way.
+pub struct Training {
+    network: BurnNetwork,
+    optimizer: ModuleOptimizer,
+    settings: Settings,
+    device: Device,
+    step: usize,
+}
+
+/// A line of the log.
+#[derive(Clone, PartialEq, Debug, Serialize)]
+pub struct Line {
+    /// How many steps were done.
+    pub step: usize,
+    /// The mean loss since the last line.
+    pub loss: f64,
+    /// The rate of the last step.
+    pub rate: f64,
+    /// What the network reaches on shapes that it does not train on.
+    pub held_out: Figures,
+}
+
+/// Why a run ends early.
+#[derive(Debug, Error)]
+pub enum TrainError {
+    /// The user asked to stop; the last checkpoint is whole.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// A file of the run cannot be read or written.
+    #[error("cannot use {path}: {cause}")]
+    File {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        cause: io::Error,
+    },
+    /// A checkpoint's tensors cannot be read or written.
+    #[error("the checkpoint in {path} cannot be used: {reason}")]
+    Checkpoint {
+        /// Where.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// The run was begun with other settings.
+    #[error("the run in {path} was begun with other settings; choose another folder")]
+    OtherSettings {
+        /// Where.
+        path: PathBuf,
+    },
+    /// The loss is not a number any more.
+    #[error("the loss of step {step} is not finite; a smaller rate may help")]
+    Diverged {
+        /// Which step.
+        step: usize,
+    },
+}
+
+/// What a checkpoint says besides its tensors.
+#[derive(Serialize, Deserialize)]
+struct State {
+    settings: Settings,
+    step: usize,
+}
+
+impl Training {
+    /// A new network, the same for the same seed.
+    pub fn new(settings: Settings) -> Self {
+        let device = Device::flex().autodiff();
+        device.seed(settings.seed);
+        Self {
+            network: BurnNetwork::new(&settings.sizes, &device),
+            optimizer: optimizer(),
+            settings,
+            device,
+            step: 0,
+        }
+    }
+
+    /// Continues from a checkpoint, or begins where there is none.
+    ///
+    /// # Errors
+    /// [`TrainError`], also when the checkpoint was made with other settings.
+    pub fn resumed(settings: Settings, run: &Path) -> Result<Self, TrainError> {
+        let mut training = Self::new(settings);
+        let folder = run.join("checkpoint");
+        let path = folder.join("state.json");
+        if !path.exists() {
+            return Ok(training);
+        }
+        let text = fs::read(&path).map_err(|cause| file_error(&path, cause))?;
+        let state: State = serde_json::from_slice(&text).map_err(|e| broken(&folder, &e))?;
+        if state.settings != training.settings {
+            return Err(TrainError::OtherSettings { path: folder });
+        }
+        let record = ModuleRecord::load(folder.join("network.bpk"));
+        let record = record.map_err(|e: RecordError| broken(&folder, &e))?;
+        let network = training.network.clone().try_load_record(record);
+        training.network = network.map_err(|e| broken(&folder, &e))?;
+        let loaded = training.optimizer.load(folder.join("optimizer.bpk"));
+        training.optimizer = loaded.map_err(|e| broken(&folder, &e))?;
+        training.step = state.step;
+        Ok(training)
+    }
+
+    /// How many steps were done.
+    pub fn step(&self) -> usize {
+        self.step
+    }
+
+    /// The network as it is, for predictions.
+    pub fn network(&self) -> Network {
+        let network = Network::new(&self.settings.sizes, &self.network.parameters());
+        network.expect("burn's network has the same parts")
+    }
+
+    /// One step on some samples, each turned by one of the half turns; returns the loss.
+    pub fn learn(&mut self, samples: &[&Sample], turns: &[usize]) -> f64 {
+        let turned: Vec<Pyramid> = samples
+            .iter()
+            .zip(turns)
+            .map(|(sample, &turn)| sample.prepared.turned(half_turns()[turn]).pyramid)
+            .collect();
+        let joined = Pyramid::joined(&turned.iter().collect::<Vec<_>>());
+        let faces = Faces::new(samples, &self.device);
+        let loss = faces.loss(self.network.forward(&joined, &self.device));
+        let value = f64::from(loss.clone().into_scalar::<f32>());
+        let gradients = GradientsParams::from_grads(loss.backward(), &self.network);
+        let rate = self.rate();
+        self.network = self.optimizer.step(rate, self.network.clone(), gradients);
+        self.step += 1;
+        value
+    }
+
+    /// Runs to the end, logging and keeping a checkpoint every interval.
+    ///
+    /// # Errors
+    /// [`TrainError`]; whatever happens, the last checkpoint is whole.
+    pub fn run(
+        &mut self,
+        [training, held_out]: [&[Sample]; 2],
+        run: &Path,
+        progress: &Progress,
+    ) -> Result<(), TrainError> {
+        let (mut sum, mut n) = (0.0, 0);
+        while self.step < self.settings.n_steps {
+            progress.at(self.step as f64 / self.settings.n_steps as f64)?;
+            // From the step's number alone, so that a resumed run sees what the whole one does.
+            let mut random = Random::new(self.settings.seed ^ (self.step as u64) << 20);
+            let batch = 0..self.settings.batch;
+            let chosen: Vec<&Sample> = batch
+                .clone()
+                .map(|_| &training[random.below(training.len())])
+                .collect();
+            let turns: Vec<usize> = batch.map(|_| random.below(4)).collect();
+            let loss = self.learn(&chosen, &turns);
+            if !loss.is_finite() {
+                return Err(TrainError::Diverged { step: self.step });
+            }
+            sum += loss;
+            n += 1;
+            if self.step % self.settings.interval == 0 || self.step == self.settings.n_steps {
+                let line = Line {
+                    step: self.step,
+                    loss: sum / f64::from(n),
+                    rate: self.rate(),
+                    held_out: evaluate(&self.network(), held_out),
+                };
+                (sum, n) = (0.0, 0);
+                self.keep(run)?;
+                log(run, &line)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The weights for predictions, and what they came from.
+    pub fn weights(&self, provenance: &str) -> Weights {
+        let header = Header {
+            sizes: self.settings.sizes.clone(),
+            n_features: N_FEATURES,
+            provenance: format!("{provenance}; {} steps", self.step),
+        };
+        let parameters = self.network.parameters();
+        Weights { header, parameters }
+    }
+
+    /// Writes a checkpoint beside the last one and then puts it in its place.
+    fn keep(&self, run: &Path) -> Result<(), TrainError> {
+        let [fresh, folder, old] =
+            ["checkpoint.new", "checkpoint", "checkpoint.old"].map(|name| run.join(name));
+        let failed = |cause| file_error(&fresh, cause);
+        fs::create_dir_all(&fresh).map_err(failed)?;
+        let record = self.network.clone().into_record();
+        record
+            .save(fresh.join("network.bpk"))
+            .map_err(|e| broken(&fresh, &e))?;
+        let kept = self.optimizer.save(fresh.join("optimizer.bpk"));
+        kept.map_err(|e| broken(&fresh, &e))?;
+        let state = State {
+            settings: self.settings.clone(),
+            step: self.step,
+        };
+        let text = serde_json::to_vec_pretty(&state).map_err(|e| broken(&fresh, &e))?;
+        fs::write(fresh.join("state.json"), text).map_err(failed)?;
+        if folder.exists() {
+            fs::rename(&folder, &old).map_err(failed)?;
+        }
+        fs::rename(&fresh, &folder).map_err(failed)?;
+        if old.exists() {
+            fs::remove_dir_all(&old).map_err(failed)?;
+        }
+        Ok(())
+    }
+
+    fn rate(&self) -> f64 {
+        one_cycle(self.step, self.settings.n_steps, self.settings.rate)
+    }
+}
+
+fn optimizer() -> ModuleOptimizer {
+    let clipping = GradientClippingConfig::Norm(1.0);
+    let config = AdamWConfig::new().with_weight_decay(1e-2);
+    config.with_grad_clipping(Some(clipping)).init()
+}
+
+fn log(run: &Path, line: &Line) -> Result<(), TrainError> {
+    let path = run.join("log.jsonl");
+    let open = OpenOptions::new().create(true).append(true).open(&path);
+    let write = |mut file: File| {
+        let text = serde_json::to_string(line).expect("a line is plain numbers");
+        writeln!(file, "{text}")
+    };
+    open.and_then(write)
+        .map_err(|cause| file_error(&path, cause))
+}
+
+fn file_error(path: &Path, cause: io::Error) -> TrainError {
+    let path = path.to_owned();
+    TrainError::File { path, cause }
+}
+
+fn broken(path: &Path, reason: &dyn std::fmt::Display) -> TrainError {
+    TrainError::Checkpoint {
+        path: path.to_owned(),
+        reason: reason.to_string(),
+    }
+}

@@ -1,0 +1,155 @@
+//! A shape made ready to train on.
+
+use glam::DVec3;
+use orbflow_geometry::decimate::{self, CollapseError, collapse_to_tetrahedron, simplify};
+use orbflow_geometry::embed::{self, distortion};
+use orbflow_geometry::hierarchy::HierarchyError;
+use orbflow_geometry::measure::area_vector;
+use orbflow_geometry::mesh::{Id, TriangleMesh, TriangleMeshError, VertexMap};
+use orbflow_geometry::progress::Progress;
+use orbflow_geometry::sphere_map::folded_faces;
+use orbflow_network::pyramid::Prepared;
+use thiserror::Error;
+
+use crate::parts::refined;
+
+/// Faces before the collapse: enough that the finest level is chosen by it, few enough to be fast.
+const N_FACES: usize = 3_000;
+/// A triangle of less than this share of the mean area has no shape to keep.
+const LEAST_AREA: f64 = 1e-5;
+/// How much of the mean squared edge is added to the rest metric, as the solver does below 5,000
+/// vertices: without it slivers drown the rest of the gradient.
+const REGULAR: f64 = 0.01;
+
+/// A shape, what the network reads of it, and what the loss wants to know.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// Where it comes from.
+    pub name: String,
+    /// What the network reads.
+    pub prepared: Prepared,
+    /// What the loss knows of each face.
+    pub rests: Vec<Rest>,
+    /// The finest level as a mesh.
+    pub mesh: TriangleMesh,
+}
+
+/// The rest shape of a triangle, the whole surface scaled to the area 4π.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Rest {
+    /// What the squared edges opposite to each corner count in the Dirichlet density.
+    pub dirichlet: [f32; 3],
+    /// 1 / 2A.
+    pub per_area: f32,
+    /// The triangle's share of the surface; zero without area.
+    pub share: f32,
+}
+
+/// How good a proposal is.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Quality {
+    /// Its distortion, as reports count it.
+    pub energy: f64,
+    /// How many triangles of a hundred are folded.
+    pub folds_pct: f64,
+}
+
+/// Why a shape cannot be trained on.
+#[derive(Clone, PartialEq, Debug, Error)]
+pub enum SampleError {
+    /// It cannot be simplified.
+    #[error(transparent)]
+    Simplify(#[from] decimate::Error),
+    /// It does not collapse.
+    #[error(transparent)]
+    Collapse(#[from] CollapseError),
+    /// Its levels contradict each other.
+    #[error(transparent)]
+    Hierarchy(#[from] HierarchyError),
+    /// Its finest level is no mesh.
+    #[error(transparent)]
+    Mesh(#[from] TriangleMeshError),
+    /// The solver fails on it.
+    #[error(transparent)]
+    Solver(#[from] embed::Error),
+}
+
+impl Sample {
+    /// Prepares a closed mesh of genus 0 for a network with levels of these sizes.
+    ///
+    /// # Errors
+    /// [`SampleError`].
+    pub fn new(name: String, mesh: TriangleMesh, levels: &[usize]) -> Result<Self, SampleError> {
+        let quiet = Progress::none();
+        let settings = decimate::Settings { n_faces: N_FACES };
+        let small = simplify(&refined(mesh, N_FACES), &settings, &quiet)?.mesh;
+        let hierarchy = collapse_to_tetrahedron(small, &quiet)?;
+        let prepared = Prepared::new(&hierarchy, levels)?;
+        let mesh = TriangleMesh::new(prepared.positions.clone(), prepared.faces.clone())?;
+        Ok(Self {
+            name,
+            rests: rests(&mesh),
+            prepared,
+            mesh,
+        })
+    }
+
+    /// The distortion that the solver reaches on the finest level.
+    ///
+    /// # Errors
+    /// [`SampleError`].
+    pub fn solver_energy(&self) -> Result<f64, SampleError> {
+        let quiet = Progress::none();
+        let hierarchy = collapse_to_tetrahedron(self.mesh.clone(), &quiet)?;
+        let (solver, settings) = (embed::Solver::default(), embed::Settings::default());
+        let embedded = embed::embed(&hierarchy, &solver, &settings, &quiet)?;
+        Ok(embedded.report.energy)
+    }
+
+    /// Assesses what was proposed for the finest level.
+    pub fn quality(&self, directions: &[DVec3]) -> Quality {
+        let sphere: VertexMap<DVec3> = directions.iter().map(|d| d.normalize_or_zero()).collect();
+        let n_folds = folded_faces(self.mesh.faces(), &sphere).len();
+        Quality {
+            energy: distortion(&self.mesh, &sphere),
+            folds_pct: 100.0 * n_folds as f64 / self.mesh.n_faces() as f64,
+        }
+    }
+}
+
+fn rests(mesh: &TriangleMesh) -> Vec<Rest> {
+    let corners = || {
+        mesh.faces()
+            .iter()
+            .map(|f| f.map(|v| mesh.positions()[v.index()]))
+    };
+    let areas: Vec<f64> = corners().map(|t| area_vector(t).length()).collect();
+    let total: f64 = areas.iter().sum();
+    let least = LEAST_AREA * total / areas.len() as f64;
+    let rest = |([a, b, c], area): ([DVec3; 3], &f64)| {
+        let squares = [(b, c), (c, a), (a, b)].map(|(p, q)| p.distance_squared(q));
+        let more = REGULAR * squares.iter().sum::<f64>() / 3.0;
+        let [x, y, z] = squares.map(|square| square + more);
+        // Twice the products of the edges at each corner, and 16 A², from lengths alone.
+        let products = [y + z - x, z + x - y, x + y - z];
+        let sixteen = 2.0 * (x * y + y * z + z * x) - (x * x + y * y + z * z);
+        let square = sixteen.max(f64::MIN_POSITIVE) / 4.0;
+        let is_flat = *area < least;
+        Rest {
+            dirichlet: products.map(|p| {
+                if is_flat {
+                    0.0
+                } else {
+                    (0.5 * p / square) as f32
+                }
+            }),
+            per_area: if is_flat {
+                0.0
+            } else {
+                square.sqrt().recip() as f32
+            },
+            share: if is_flat { 0.0 } else { (area / total) as f32 },
+        }
+    };
+    corners().zip(&areas).map(rest).collect()
+}

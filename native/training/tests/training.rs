@@ -1,0 +1,169 @@
+//! The network can learn, and a run that was cut goes on as if it had not been.
+
+use std::fs;
+
+use burn::tensor::{Device, Tensor, TensorData};
+use glam::DVec3;
+use orbflow_geometry::mesh::TriangleMesh;
+use orbflow_geometry::progress::Progress;
+use orbflow_network::net::Sizes;
+use orbflow_network::weights::Weights;
+use orbflow_training::evaluate::evaluate;
+use orbflow_training::loss::Faces;
+use orbflow_training::run::{Settings, Training};
+use orbflow_training::sample::Sample;
+use orbflow_training::shapes::{march, shape};
+
+fn samples(n: u64, levels: &[usize]) -> Vec<Sample> {
+    let sample = |seed: u64| Sample::new(format!("shape {seed}"), shape(seed), levels).unwrap();
+    (0..n).map(sample).collect()
+}
+
+fn small() -> Settings {
+    Settings {
+        sizes: Sizes {
+            width: 16,
+            levels: vec![100, 30],
+            blocks: vec![1, 2],
+        },
+        n_steps: 12,
+        batch: 2,
+        interval: 4,
+        ..Settings::default()
+    }
+}
+
+#[test]
+fn one_batch_is_learnt_to_the_energy_of_the_solver() {
+    let settings = Settings {
+        n_steps: 1_500,
+        ..Settings::default()
+    };
+    let samples = samples(4, &settings.sizes.levels);
+    let batch: Vec<&Sample> = samples.iter().collect();
+    let mut training = Training::new(settings);
+    for _ in 0..1_500 {
+        assert!(training.learn(&batch, &[0; 4]).is_finite());
+    }
+    let solver = samples.iter().map(|sample| sample.solver_energy().unwrap());
+    let solver: f64 = solver.sum::<f64>() / samples.len() as f64;
+    let network = training.network();
+    let reached = samples
+        .iter()
+        .map(|sample| orbflow_training::evaluate::assess(&network, sample).energy);
+    let reached: f64 = reached.sum::<f64>() / samples.len() as f64;
+    assert!(
+        reached < 1.02 * solver,
+        "{reached} of the solver's {solver}"
+    );
+}
+
+#[test]
+fn a_resumed_run_equals_an_uninterrupted_one() {
+    let (settings, quiet) = (small(), Progress::none());
+    let samples = samples(3, &settings.sizes.levels);
+    let (whole, cut) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let both = [&samples[..2], &samples[2..]];
+    let mut straight = Training::new(settings.clone());
+    straight.run(both, whole.path(), &quiet).unwrap();
+
+    // The run is cut in its sixth step: what came after the checkpoint at four is lost.
+    let mut first = Training::new(settings.clone());
+    let stop = |_: &str, share: f64| assert!(share < 0.4, "cut");
+    let token = orbflow_geometry::progress::CancelToken::new();
+    let progress = Progress::new(token, &stop);
+    let cut_off = std::panic::AssertUnwindSafe(|| first.run(both, cut.path(), &progress));
+    assert!(std::panic::catch_unwind(cut_off).is_err());
+    let mut second = Training::resumed(settings, cut.path()).unwrap();
+    assert_eq!(second.step(), 4);
+    second.run(both, cut.path(), &quiet).unwrap();
+
+    let log = |folder: &tempfile::TempDir| fs::read_to_string(folder.path().join("log.jsonl"));
+    assert_eq!(log(&whole).unwrap(), log(&cut).unwrap());
+    assert_eq!(straight.weights(""), second.weights(""));
+}
+
+#[test]
+fn other_settings_do_not_resume() {
+    let (settings, folder) = (small(), tempfile::tempdir().unwrap());
+    let samples = samples(1, &settings.sizes.levels);
+    let mut training = Training::new(settings.clone());
+    training
+        .run([&samples, &[]], folder.path(), &Progress::none())
+        .unwrap();
+    let other = Settings {
+        rate: 1e-3,
+        ..settings
+    };
+    let error = Training::resumed(other, folder.path()).err().unwrap();
+    assert!(error.to_string().contains("other settings"), "{error}");
+}
+
+#[test]
+fn a_short_run_helps_on_shapes_never_seen_and_its_weights_can_be_read() {
+    let settings = Settings {
+        n_steps: 150,
+        ..small()
+    };
+    let samples = samples(10, &settings.sizes.levels);
+    let folder = tempfile::tempdir().unwrap();
+    let mut training = Training::new(settings);
+    let before = evaluate(&training.network(), &samples[8..]).energy;
+    training
+        .run(
+            [&samples[..8], &samples[8..]],
+            folder.path(),
+            &Progress::none(),
+        )
+        .unwrap();
+    let after = evaluate(&training.network(), &samples[8..]).energy;
+    assert!(after < before, "{before} to {after}");
+    let bytes = training.weights("a test").to_bytes();
+    let read = Weights::from_bytes(&bytes).unwrap();
+    assert_eq!(read.header.provenance, "a test; 150 steps");
+}
+
+/// The loss of some directions for one sample.
+fn loss(sample: &Sample, directions: impl Fn(DVec3) -> DVec3) -> f64 {
+    let device = Device::flex();
+    let points = sample.mesh.positions().iter();
+    let rows: Vec<f32> = points
+        .flat_map(|&p| directions(p).as_vec3().to_array())
+        .collect();
+    let rows = Tensor::<2>::from_data(
+        TensorData::new(rows, [sample.mesh.n_vertices(), 3]),
+        &device,
+    );
+    let loss = Faces::new(&[sample], &device).loss(rows);
+    f64::from(loss.into_scalar::<f32>())
+}
+
+/// A ball, of which the radial map is the best.
+fn ball() -> Sample {
+    let mesh = march(|p| p.length() - 0.8, 1.0, 24);
+    let mesh = TriangleMesh::new(mesh.positions, mesh.faces).unwrap();
+    Sample::new("ball".to_owned(), mesh, &[200, 50]).unwrap()
+}
+
+#[test]
+fn the_loss_of_a_map_without_folds_is_its_distortion() {
+    let sample = ball();
+    let energy = sample.quality(sample.mesh.positions()).energy;
+    let found = loss(&sample, |p| p);
+    assert!((found / energy - 1.0).abs() < 0.05, "{found} {energy}");
+}
+
+#[test]
+fn folded_and_collapsed_maps_cost_more() {
+    let sample = ball();
+    let radial = loss(&sample, |p| p);
+    for (name, map) in [
+        ("a point", (|p| p * 1e-3 + DVec3::X) as fn(DVec3) -> DVec3),
+        ("a line", |p| p * 1e-3 + DVec3::X * p.x),
+        ("inside out", |p| -p),
+        ("a half", |p| p.with_z(p.z.abs())),
+    ] {
+        let cost = loss(&sample, map);
+        assert!(cost > radial + 5.0, "{name}: {cost}, radial {radial}");
+    }
+}
