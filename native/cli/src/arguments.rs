@@ -1,9 +1,10 @@
 //! What can be asked for on the command line.
 
+use std::path::PathBuf;
+
 use clap::builder::{PossibleValuesParser, TypedValueParser, ValueParser};
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
-use orbflow_geometry::embed::{OffsetPredictor, Solver};
 use orbflow_geometry::mesh::io::Format;
 use orbflow_geometry::pipeline::{Kind, MAX_FACES, MIN_FACES, Primitive, Settings, Style};
 use orbflow_geometry::score;
@@ -157,6 +158,9 @@ pub struct Run {
     /// What proposes the map to the sphere
     #[arg(long, value_enum, default_value_t = Predictor::Solver)]
     pub predictor: Predictor,
+    /// The weights of the network, as `orbflow train` writes them
+    #[arg(long, value_name = "FILE", required_if_eq("predictor", "network"))]
+    pub weights: Option<PathBuf>,
     /// How many threads to use, 0 for all; the result is the same
     #[arg(long, value_name = "T", default_value_t = 0)]
     pub threads: usize,
@@ -170,15 +174,8 @@ pub struct Run {
 pub enum Predictor {
     /// Progressive embedding; needs no training
     Solver,
-}
-
-impl Predictor {
-    /// The predictor itself.
-    pub fn build(self) -> Box<dyn OffsetPredictor> {
-        match self {
-            Self::Solver => Box::new(Solver::default()),
-        }
-    }
+    /// A graph network for the coarse levels; the solver grows the rest
+    Network,
 }
 
 const READ: &[Format] = &[Format::Obj, Format::Ply, Format::Stl, Format::Off];

@@ -40,7 +40,7 @@ fn remesh(arguments: &Remesh, interrupt: &Interrupt) -> Result<(), Error> {
     let token = interrupt.start_work();
     let places = [Some(&files.output), report.as_ref(), sphere.as_ref()];
     let mut outputs = Outputs::new(places.into_iter().flatten())?;
-    let (settings, predictor) = (arguments.settings(), run.predictor.build());
+    let (settings, predictor) = (arguments.settings(), run.build()?);
     let input = Input {
         materials: materials(&file),
         ..Input::new(&file.mesh)
@@ -82,7 +82,7 @@ fn embed(arguments: &Embed, interrupt: &Interrupt) -> Result<(), Error> {
     let file = read(place, input.input_format)?;
     let token = interrupt.start_work();
     let mut outputs = Outputs::new([Some(report), sphere.as_ref()].into_iter().flatten())?;
-    let predictor = run.predictor.build();
+    let predictor = run.build()?;
     let embedded = with_bar(token, |progress| {
         pipeline::embed(&file.mesh, run.threads, predictor.as_ref(), progress)
     });

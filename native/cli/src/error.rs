@@ -1,11 +1,13 @@
 //! Why the program ends without doing what was asked.
 
 use std::io;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use orbflow_geometry::mesh::io::{ReadError, WriteError};
 use orbflow_geometry::progress::Cancelled;
 use orbflow_geometry::{pipeline, score};
+use orbflow_network::weights::ReadWeightsError;
 use thiserror::Error;
 
 use crate::interrupt::CANCELLED;
@@ -20,6 +22,15 @@ pub enum Error {
     /// The input's bytes are no mesh.
     #[error("{place}: {cause}")]
     Read { place: Place, cause: ReadError },
+    /// The file of weights cannot be read.
+    #[error("cannot read {}: {cause}", path.display())]
+    OpenWeights { path: PathBuf, cause: io::Error },
+    /// The file holds no weights that this program can use.
+    #[error("{}: {cause}", path.display())]
+    Weights {
+        path: PathBuf,
+        cause: ReadWeightsError,
+    },
     /// The output cannot be made.
     #[error("cannot write {place}: {cause}")]
     Write { place: Place, cause: WriteError },

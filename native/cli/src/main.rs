@@ -11,6 +11,7 @@ mod inputs;
 mod interrupt;
 mod outputs;
 mod place;
+mod predictor;
 #[cfg(feature = "train")]
 mod train;
 

@@ -185,7 +185,9 @@ fn pooled(fine: &[f32], level: &Level) -> Vec<f32> {
         sum.iter_mut().zip(row).for_each(|(sum, x)| *sum += x);
     }
     for (sum, count) in sums.chunks_exact_mut(width.max(1)).zip(&counts) {
-        sum.iter_mut().for_each(|sum| *sum /= count);
+        for sum in sum {
+            *sum /= count;
+        }
     }
     sums
 }

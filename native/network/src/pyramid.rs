@@ -100,6 +100,7 @@ impl Prepared {
     }
 
     /// The same, turned: the faces, positions and features of a turned mesh.
+    #[must_use]
     pub fn turned(&self, turn: DMat3) -> Self {
         let mut turned = self.clone();
         for p in &mut turned.positions {

@@ -23,7 +23,7 @@ fn weights() -> Weights {
         blocks: vec![1, 1, 2],
     };
     let mut random = Random::new(3);
-    let n = sizes.n_parameters().unwrap();
+    let n = sizes.n_parameters().expect("a small network");
     Weights {
         parameters: (0..n).map(|_| (random.unit() - 0.5) as f32 * 0.5).collect(),
         header: Header {
@@ -35,13 +35,13 @@ fn weights() -> Weights {
 }
 
 fn predictor(weights: &Weights) -> NetworkPredictor {
-    NetworkPredictor::new(weights).unwrap()
+    NetworkPredictor::new(weights).expect("parameters of their sizes")
 }
 
 fn propose(mesh: TriangleMesh) -> Proposal {
-    let hierarchy = collapse_to_tetrahedron(mesh, &Progress::none()).unwrap();
+    let hierarchy = collapse_to_tetrahedron(mesh, &Progress::none()).expect("a closed mesh");
     let proposed = predictor(&weights()).propose(&hierarchy, &Progress::none());
-    proposed.unwrap()
+    proposed.expect("nothing cancels")
 }
 
 #[test]

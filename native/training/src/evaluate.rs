@@ -18,12 +18,8 @@ pub struct Figures {
 
 /// The medians of what a network proposes.
 pub fn evaluate(network: &Network, samples: &[Sample]) -> Figures {
-    medians(
-        samples
-            .iter()
-            .map(|sample| assess(network, sample))
-            .collect(),
-    )
+    let qualities = samples.iter().map(|sample| assess(network, sample));
+    medians(&qualities.collect::<Vec<_>>())
 }
 
 /// What a network proposes for one shape.
@@ -32,7 +28,7 @@ pub fn assess(network: &Network, sample: &Sample) -> Quality {
 }
 
 /// The medians of some assessments; zeros of none.
-pub fn medians(qualities: Vec<Quality>) -> Figures {
+pub fn medians(qualities: &[Quality]) -> Figures {
     let median = |value: fn(&Quality) -> f64| {
         let mut values: Vec<f64> = qualities.iter().map(value).collect();
         values.sort_by(f64::total_cmp);
@@ -70,7 +66,7 @@ pub fn baselines(samples: &[Sample]) -> Result<Baselines, SampleError> {
         });
     }
     Ok(Baselines {
-        radial: medians(radial.collect()),
-        solver: medians(solved),
+        radial: medians(&radial.collect::<Vec<_>>()),
+        solver: medians(&solved),
     })
 }

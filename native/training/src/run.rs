@@ -216,7 +216,9 @@ impl Training {
             }
             sum += loss;
             n += 1;
-            if self.step % self.settings.interval == 0 || self.step == self.settings.n_steps {
+            if self.step.is_multiple_of(self.settings.interval)
+                || self.step == self.settings.n_steps
+            {
                 let line = Line {
                     step: self.step,
                     loss: sum / f64::from(n),

@@ -39,7 +39,9 @@ fn weighted(
     let rows = tensor(rows, 4 * WIDTH).require_grad();
     let sum = (operation(rows.clone()) * tensor(weights, WIDTH)).sum();
     let value = sum.clone().into_scalar::<f32>();
-    let gradient = rows.grad(&sum.backward()).unwrap();
+    let gradient = rows
+        .grad(&sum.backward())
+        .expect("the rows have a gradient");
     (value, numbers(gradient))
 }
 
@@ -49,7 +51,7 @@ fn fused_and_composed_agree_in_value_and_gradient() {
     let n = graph.n_vertices();
     let (rows, weights) = (random(n * 4 * WIDTH, 1), random(n * WIDTH, 2));
     let (value, gradient) = weighted(&rows, &weights, |rows| gated_sum(rows, &graph));
-    let (wanted, wanted_gradient) = weighted(&rows, &weights, |rows| composed(rows, &graph));
+    let (wanted, wanted_gradient) = weighted(&rows, &weights, |rows| composed(&rows, &graph));
     assert!(
         (value - wanted).abs() < 1e-3 * wanted.abs().max(1.0),
         "{value} {wanted}"

@@ -15,7 +15,10 @@ use orbflow_training::sample::Sample;
 use orbflow_training::shapes::{march, shape};
 
 fn samples(n: u64, levels: &[usize]) -> Vec<Sample> {
-    let sample = |seed: u64| Sample::new(format!("shape {seed}"), shape(seed), levels).unwrap();
+    let sample = |seed: u64| {
+        let sample = Sample::new(format!("shape {seed}"), shape(seed), levels);
+        sample.expect("made shapes are closed")
+    };
     (0..n).map(sample).collect()
 }
 
@@ -141,8 +144,8 @@ fn loss(sample: &Sample, directions: impl Fn(DVec3) -> DVec3) -> f64 {
 /// A ball, of which the radial map is the best.
 fn ball() -> Sample {
     let mesh = march(|p| p.length() - 0.8, 1.0, 24);
-    let mesh = TriangleMesh::new(mesh.positions, mesh.faces).unwrap();
-    Sample::new("ball".to_owned(), mesh, &[200, 50]).unwrap()
+    let mesh = TriangleMesh::new(mesh.positions, mesh.faces).expect("a ball is closed");
+    Sample::new("ball".to_owned(), mesh, &[200, 50]).expect("a ball is closed")
 }
 
 #[test]

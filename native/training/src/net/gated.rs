@@ -22,7 +22,7 @@ pub fn gated_sum(rows: Tensor<2>, graph: &Arc<Neighbours>) -> Tensor<2> {
 }
 
 /// The same by gathering and scattering, for any backend; the reference of the fused form.
-pub fn composed(rows: Tensor<2>, graph: &Neighbours) -> Tensor<2> {
+pub fn composed(rows: &Tensor<2>, graph: &Neighbours) -> Tensor<2> {
     let [_, width] = rows.dims();
     let width = width / 4;
     let device = rows.device();

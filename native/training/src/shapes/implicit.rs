@@ -113,7 +113,7 @@ fn creature(random: &mut Random) -> Vec<Piece> {
     for _ in 0..2 + random.below(6) {
         let mut ahead = direction(random);
         let mut joint = ahead * between(random, 0.0, 0.15);
-        for _ in 0..1 + random.below(3) {
+        for _ in 0..=random.below(3) {
             let end = joint + ahead * between(random, 0.3, 0.6);
             pieces.push(rod([joint, end], thickness, random));
             ahead = (ahead + 0.9 * direction(random)).normalize_or(ahead);

@@ -1,0 +1,35 @@
+//! The predictor that was asked for.
+
+use std::fs;
+use std::path::Path;
+
+use orbflow_geometry::embed::{OffsetPredictor, Solver};
+use orbflow_network::NetworkPredictor;
+use orbflow_network::weights::{ReadWeightsError, Weights};
+
+use crate::arguments::{Predictor, Run};
+use crate::error::Error;
+
+impl Run {
+    /// The predictor itself, with its weights.
+    pub fn build(&self) -> Result<Box<dyn OffsetPredictor>, Error> {
+        match (self.predictor, &self.weights) {
+            (Predictor::Network, Some(path)) => Ok(Box::new(network(path)?)),
+            // The arguments see to it that a network has weights.
+            _ => Ok(Box::new(Solver::default())),
+        }
+    }
+}
+
+fn network(path: &Path) -> Result<NetworkPredictor, Error> {
+    let wrong = |cause: ReadWeightsError| Error::Weights {
+        path: path.to_owned(),
+        cause,
+    };
+    let bytes = fs::read(path).map_err(|cause| Error::OpenWeights {
+        path: path.to_owned(),
+        cause,
+    })?;
+    let weights = Weights::from_bytes(&bytes).map_err(wrong)?;
+    NetworkPredictor::new(&weights).map_err(wrong)
+}
