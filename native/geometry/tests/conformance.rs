@@ -148,6 +148,7 @@ fn a_proposal_for_a_coarse_level_is_grown_to_a_valid_map() {
             for n_coarse in [0, 4, 30, hierarchy.n_vertices() / 2] {
                 let report = check(&hierarchy, &Coarse(bent, n_coarse));
                 let message = format!("{name} {} at {n_coarse}: {report:?}", bent.0);
+                assert_eq!(report.proposal.n_vertices, n_coarse.max(4), "{message}");
                 assert!(report.energy < reference.energy + 0.05, "{message}");
             }
         }

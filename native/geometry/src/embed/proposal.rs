@@ -12,6 +12,8 @@ use crate::sphere_map::{degree, folded_faces};
 /// What was proposed, before any repair.
 #[derive(Clone, Copy, PartialEq, Debug, Default, Serialize)]
 pub struct ProposalReport {
+    /// How many vertices were proposed.
+    pub n_vertices: usize,
     /// Its [`distortion`](super::distortion); what is not usable counts as the centre of the sphere.
     pub energy: f64,
     /// How many triangles were folded.
@@ -43,6 +45,7 @@ impl ProposalReport {
         let degree = degree(mesh.faces(), sphere);
         progress.check()?;
         Ok(Self {
+            n_vertices: mesh.n_vertices(),
             energy,
             n_folds,
             folds_pct: 100.0 * n_folds as f64 / mesh.n_faces() as f64,

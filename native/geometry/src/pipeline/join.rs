@@ -72,7 +72,8 @@ pub fn join_embeddings(reports: &[embed::Report], areas: &[f64]) -> embed::Repor
             .unwrap_or(1)
     };
     let n_vertices = count(|r| r.n_vertices);
-    let n_triangles = count(|r| 2 * r.n_vertices - 4);
+    // Of the levels that were proposed.
+    let n_triangles = count(|r| 2 * r.proposal.n_vertices - 4);
     let n_folds = count(|r| r.proposal.n_folds);
     embed::Report {
         n_vertices,
@@ -87,6 +88,7 @@ pub fn join_embeddings(reports: &[embed::Report], areas: &[f64]) -> embed::Repor
             .map(|r| r.predictor.clone())
             .unwrap_or_default(),
         proposal: embed::ProposalReport {
+            n_vertices: count(|r| r.proposal.n_vertices),
             energy: mean(|r| r.proposal.energy),
             n_folds,
             folds_pct: 100.0 * n_folds as f64 / n_triangles.max(1) as f64,
