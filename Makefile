@@ -9,18 +9,21 @@ SOURCES := $(shell find Cargo.toml Cargo.lock native/*/Cargo.toml native/*/src n
 ADDON := $(shell find addon -type f ! -name "*.pyc")
 
 .SECONDARY: # keep the stamps
-.PHONY: help demo test test-rust test-python wheel zip fixtures pictures bench lint format ci clean
+.PHONY: help demo test test-rust test-training test-python wheel zip fixtures pictures bench lint format ci clean
 
 help: ## Prints this list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 demo: dist/zip.stamp $(VENV)/venv.stamp ## Remeshes a fixture in the real Blender and leaves the result in demo/
 	$(BIN)/python scripts/demo.py demo
 
-test: test-rust test-python ## Runs every test
+test: test-rust test-training test-python ## Runs every test
 
-test-rust: ## Runs the tests of the Rust crates
-	cargo test --workspace --locked --quiet
+test-rust: ## Runs the tests of the Rust crates, but for training
+	cargo test --workspace --exclude orbflow-training --locked --quiet
+
+test-training: ## Runs the tests of training; builds burn, which takes minutes
+	cargo test -p orbflow-training -p orbflow-cli --features orbflow-cli/train --locked --quiet
 
 test-python: dist/zip.stamp $(VENV)/wheel.stamp ## Runs the tests over Blender, the wheel and the zip
 	$(BIN)/python -m pytest
@@ -41,8 +44,8 @@ bench: $(VENV)/bench.stamp ## Measures the figures of docs/benchmarks.md anew
 
 lint: $(VENV)/lint.stamp ## Runs every check that is not a test
 	cargo fmt --all --check
-	cargo clippy --workspace --all-targets --locked --quiet -- -D warnings
-	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked --quiet
+	cargo clippy --workspace --all-targets --features orbflow-cli/train --locked --quiet -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --features orbflow-cli/train --locked --quiet
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/typos
@@ -60,8 +63,7 @@ format: $(VENV)/lint.stamp ## Formats all code
 ci: export CARGO_INCREMENTAL = 0
 ci: export PIP_NO_CACHE_DIR = 1
 ci: ## Runs what continuous integration runs: lint and test on Python 3.11 and 3.13
-	$(MAKE) test-rust
-	$(MAKE) test-python PYTHON_VERSION=3.13
+	$(MAKE) test PYTHON_VERSION=3.13
 	$(MAKE) test-python PYTHON_VERSION=3.11
 	$(MAKE) lint PYTHON_VERSION=3.13
 

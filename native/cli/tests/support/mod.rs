@@ -1,4 +1,5 @@
 //! Runs the program and makes its inputs.
+#![allow(dead_code)] // Every test file uses a part of it.
 
 use std::collections::HashMap;
 use std::fs;
