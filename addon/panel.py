@@ -86,7 +86,8 @@ def sentence(reports: list[dict[str, Any]]) -> str:
         sum(report[side]["n_faces"] for report in reports) for side in ("input", "output")
     )
     objects = f"{len(reports)} objects: " if len(reports) > 1 else ""
-    return f"{objects}{before:,} faces became {after:,}{_without_flow(reports)}"
+    told = _without_flow(reports) + _without_mirror(reports)
+    return f"{objects}{before:,} faces became {after:,}{told}"
 
 
 def _without_flow(reports: list[dict[str, Any]]) -> str:
@@ -97,6 +98,18 @@ def _without_flow(reports: list[dict[str, Any]]) -> str:
         return ""
     of = f" in {len(refused)} of {len(parts)} parts" if len(parts) > 1 else ""
     return f"; quad sphere instead of flow{of}: {refused[0]['flow']['reason']}"
+
+
+def _without_mirror(reports: list[dict[str, Any]]) -> str:
+    """Whether symmetry was asked for and could not be had, and why."""
+    if any(r["settings"]["mirror"] != "off" and r["plane"] is None for r in reports):
+        return "; no plane of symmetry was found"
+    parts = [part for report in reports for part in report["parts"]]
+    refused = [part for part in parts if (part["mirrored"] or {}).get("status") == "refused"]
+    if not refused:
+        return ""
+    of = f" in {len(refused)} of {len(parts)} parts" if len(parts) > 1 else ""
+    return f"; not symmetric{of}: {refused[0]['mirrored']['reason']}"
 
 
 def rows(report: dict[str, Any]) -> list[tuple[str, str]]:

@@ -27,6 +27,13 @@ _MARKS = (
     ("CREASE", "Crease", "Edges with a subdivision crease"),
     ("SEAM", "Seam", "Edges marked as seams of the UV map"),
 )
+_MIRRORS = (
+    ("OFF", "Off", "The two sides of a mesh need not be alike"),
+    ("AUTO", "Automatic", "Across the first axis in which the mesh is symmetric, if there is one"),
+    ("X", "X", "Across X; a mesh that is not symmetric is made so from the side of positive X"),
+    ("Y", "Y", "Across Y; a mesh that is not symmetric is made so from the side of positive Y"),
+    ("Z", "Z", "Across Z; a mesh that is not symmetric is made so from the side of positive Z"),
+)
 _PREDICTORS = (("SOLVER", "Solver", "Finds the map to the sphere by optimisation"),)
 
 
@@ -77,6 +84,11 @@ class Settings:
         options={"ENUM_FLAG"},
         default={"SHARP", "CREASE"},
     )
+    mirror: EnumProperty(
+        name="Mirror",
+        description="Flowing quads: makes one side the exact image of the other",
+        items=_MIRRORS,
+    )
     predictor: EnumProperty(
         name="Predictor",
         description="Who proposes where each vertex lies on the sphere",
@@ -116,7 +128,10 @@ class OrbflowSettings(bpy.types.PropertyGroup, Settings):
 def for_core(source: Settings) -> dict[str, Any]:
     """The settings as keywords of `orbflow_native.remesh`; marks are read off the mesh."""
     values = {name: _value(getattr(source, name)) for name in NAMES if name != "marked_edges"}
-    return values | {"sharp_angle": math.degrees(source.sharp_angle)}
+    return values | {
+        "sharp_angle": math.degrees(source.sharp_angle),
+        "mirror": source.mirror.lower(),
+    }
 
 
 def copy(source: Settings, target: object) -> None:

@@ -65,6 +65,7 @@ def test_panel_and_operator_have_the_same_settings(operator: Any, scene_settings
         "adaptivity",
         "sharp_angle",
         "marked_edges",
+        "mirror",
         "predictor",
         "threads",
         "seed",
@@ -80,8 +81,14 @@ def test_the_add_on_has_the_defaults_and_ranges_of_the_core(operator: Any) -> No
     assert operator["faces"].hard_min == orbflow_native.MIN_FACES
     assert operator["faces"].hard_max == orbflow_native.MAX_FACES
     assert operator["kind"].default.lower() == given["kind"]
+    assert operator["mirror"].default.lower() == given["mirror"]
     assert operator["predictor"].default.lower() == given["predictor"]
     assert (operator["primitive"].default, given["primitive"]) == ("AUTO", None)
+
+
+def test_the_add_on_offers_the_mirrors_of_the_core(operator: Any) -> None:  # noqa: ANN401
+    offered = {item.identifier.lower() for item in operator["mirror"].enum_items}
+    assert offered == core_words("mirror") - {"?"}
 
 
 @pytest.mark.parametrize("name", ["kind", "primitive", "predictor"])

@@ -70,6 +70,16 @@ def test_marked_edges_are_edges_of_the_result(mesh: Arrays) -> None:
         orbflow_native.remesh(*mesh, marked_edges=np.zeros((1, 3), np.int32))
 
 
+def test_mirrored_quads_are_their_own_image(mesh: Arrays) -> None:
+    result = orbflow_native.remesh(*mesh, faces=400, mirror="x", score_samples=0)
+    assert result.report["plane"]["axis"] == 0
+    assert [part["mirrored"] for part in result.report["parts"]] == [{"status": "used"}]
+    points = result.positions.astype(np.float64)
+    images = points * (-1, 1, 1)
+    far = np.linalg.norm(images[:, None] - points[None], axis=2).min(axis=1)
+    assert far.max() < 1e-6 * np.linalg.norm(np.ptp(points, axis=0))
+
+
 def test_a_stretched_object_gets_even_faces_where_it_is_seen(mesh: Arrays) -> None:
     def variation(scale: tuple[float, float, float]) -> float:
         result = orbflow_native.remesh(*mesh, faces=1000, kind="triangles", scale=scale)

@@ -6,7 +6,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser, ValueParser};
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use orbflow_geometry::mesh::io::Format;
-use orbflow_geometry::pipeline::{Kind, MAX_FACES, MIN_FACES, Primitive, Settings, Style};
+use orbflow_geometry::pipeline::{Kind, MAX_FACES, MIN_FACES, Mirror, Primitive, Settings, Style};
 use orbflow_geometry::score;
 
 use crate::place::Place;
@@ -65,6 +65,10 @@ pub struct Remesh {
     /// Edges sharper than this get edges of the result along them; 180 for none
     #[arg(long, value_name = "DEGREES", default_value_t = Settings::default().sharp_angle, value_parser = degrees)]
     pub sharp_angle: f64,
+    /// Make quads that are their own image across an axis, in the plane through the origin or the
+    /// middle of the mesh; auto finds one in which the mesh is symmetric
+    #[arg(long, default_value = "off", value_parser = mirror())]
+    pub mirror: Mirror,
     #[command(flatten)]
     pub run: Run,
     /// Write what is told of the run, as JSON
@@ -203,6 +207,7 @@ impl Remesh {
                 adaptivity: self.flow.adaptivity,
             },
             sharp_angle: self.sharp_angle,
+            mirror: self.mirror,
             seed: self.run.seed,
             threads: self.run.threads,
             score: self.report.as_ref().map(|_| score::Settings::default()),
@@ -323,6 +328,11 @@ fn up_to(text: &str, most: f64) -> Result<f64, String> {
         return Ok(value);
     }
     Err(format!("it goes from 0 to {most}"))
+}
+
+fn mirror() -> ValueParser {
+    const ALL: &[Mirror] = &[Mirror::Off, Mirror::Auto, Mirror::X, Mirror::Y, Mirror::Z];
+    named(ALL, Mirror::name)
 }
 
 fn primitive() -> ValueParser {

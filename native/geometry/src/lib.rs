@@ -46,6 +46,7 @@ pub mod flow;
 pub mod hierarchy;
 pub mod measure;
 pub mod mesh;
+pub mod mirror;
 pub mod nearest;
 pub mod pipeline;
 pub mod progress;

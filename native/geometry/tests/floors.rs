@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 const FLOORS: [&[&str]; 5] = [
     &["progress"],
     &["mesh", "random", "sparse"],
-    &["hierarchy", "measure", "nearest", "sphere_map"],
+    &["hierarchy", "measure", "mirror", "nearest", "sphere_map"],
     &[
         "clean", "decimate", "deform", "embed", "flow", "score", "sphere", "transfer",
     ],

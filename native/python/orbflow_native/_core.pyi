@@ -141,6 +141,7 @@ def remesh(
     follow_shape: float = 0.5,
     adaptivity: float = 0.5,
     sharp_angle: float = 40.0,
+    mirror: str = "off",
     predictor: str = "solver",
     threads: int = 0,
     seed: int = 0,

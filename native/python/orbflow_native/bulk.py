@@ -54,6 +54,7 @@ def remesh(
     follow_shape: float = 0.5,
     adaptivity: float = 0.5,
     sharp_angle: float = 40.0,
+    mirror: str = "off",
     predictor: str = "solver",
     threads: int = 0,
     seed: int = 0,
@@ -72,7 +73,9 @@ def remesh(
     suits the kind. How quads flow: `follow_shape` from 0 (smooth loops) to 1 (edges along the
     curvature), `adaptivity` from 0 (quads of one size) to 1 (much smaller where the surface is
     bent). Edges at which the surface turns by more than `sharp_angle` degrees, and the
-    `marked_edges`, pairs of vertices (E, 2), get edges of the result along them.
+    `marked_edges`, pairs of vertices (E, 2), get edges of the result along them. `mirror` makes
+    flowing quads their own image across "x", "y" or "z", in the plane through the origin or the
+    middle of the mesh; with "auto" across the first in which the mesh is symmetric.
     `scale` is the scale of the object: faces are even in the scaled space, the
     result is in the space of the input. `reduced` is the same mesh with fewer triangles, as
     points (V, 3) and triangles (T, 3); without it, fast-simplification makes it for large
@@ -95,6 +98,7 @@ def remesh(
         follow_shape=follow_shape,
         adaptivity=adaptivity,
         sharp_angle=sharp_angle,
+        mirror=mirror,
         predictor=predictor,
         threads=threads,
         seed=seed,

@@ -34,7 +34,8 @@ pub struct Remeshed {
 /// How quads flow: `follow_shape` from 0 (smooth loops) to 1 (edges along the curvature), `adaptivity`
 /// from 0 (quads of one size) to 1 (much smaller where the surface is bent).
 /// Edges at which the surface turns by more than `sharp_angle` degrees, and the `marked_edges`
-/// `(E, 2) int32`, get edges of the result along them.
+/// `(E, 2) int32`, get edges of the result along them. `mirror` makes flowing quads their own image
+/// across "x", "y" or "z", or with "auto" across the first in which the mesh is symmetric.
 /// `score_samples` is how many points of each surface the score looks at; 0 makes no score.
 /// `progress` is called on the calling thread, at most 20 times a second, with the name of the step
 /// and the share of the work that is done. The same input and settings give the same bytes.
@@ -43,8 +44,8 @@ pub struct Remeshed {
 #[pyfunction]
 #[pyo3(signature = (
     positions, loop_start, corner_vert, *, faces=2000, kind="quads", primitive=None,
-    follow_shape=0.5, adaptivity=0.5, sharp_angle=40.0, predictor="solver", threads=0, seed=0,
-    scale=None, score_samples=10_000, material_index=None, marked_edges=None, reduced=None,
+    follow_shape=0.5, adaptivity=0.5, sharp_angle=40.0, mirror="off", predictor="solver", threads=0,
+    seed=0, scale=None, score_samples=10_000, material_index=None, marked_edges=None, reduced=None,
     progress=None, cancel=None,
 ))]
 #[expect(
@@ -62,6 +63,7 @@ pub fn remesh<'py>(
     follow_shape: f64,
     adaptivity: f64,
     sharp_angle: f64,
+    mirror: &str,
     predictor: &str,
     threads: usize,
     seed: u64,
@@ -98,6 +100,7 @@ pub fn remesh<'py>(
             adaptivity,
         },
         sharp_angle,
+        mirror: report::choice("mirror", mirror)?,
         seed,
         threads,
         score: (score_samples > 0).then(|| score::Settings {

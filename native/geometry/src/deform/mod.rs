@@ -205,6 +205,17 @@ fn fit_to_target(
 }
 
 impl Deformed {
+    /// The same with its vertices elsewhere in space; what is inverted is counted anew.
+    ///
+    /// # Panics
+    /// When the number of positions differs.
+    #[must_use]
+    pub fn moved(mut self, positions: Vec<DVec3>) -> Self {
+        self.mesh = self.mesh.with_positions(positions);
+        self.report.n_inverted = untangle::n_inverted(&self.mesh);
+        self
+    }
+
     fn new(sheet: Sheet, mut report: Report) -> Self {
         let features = sheet.features();
         let (mesh, sphere) = sheet.into_mesh();

@@ -15,9 +15,11 @@ pub mod conformal;
 pub mod covariance;
 pub mod creases;
 pub mod drag;
+mod dress;
 pub mod field;
 pub mod grid;
 mod lines;
+mod mirror;
 pub mod periods;
 pub mod place;
 mod quads;
@@ -30,4 +32,4 @@ mod stars;
 pub mod strips;
 pub mod wish;
 
-pub use quads::{Error, Flow, Report, Settings, flow};
+pub use quads::{Error, Flow, Guides, Report, Settings, flow};

@@ -1,7 +1,6 @@
 //! The passes in order: a surface in, quads out.
 
 use std::collections::BTreeMap;
-use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
 use serde::Serialize;
@@ -10,15 +9,20 @@ use thiserror::Error;
 use super::cones::keep_cones;
 use super::conformal::{FlattenError, flatten};
 use super::creases::{self, Line};
+use super::dress::{Dressed, dress, planned};
 use super::field::{self, FieldError, OrientationField};
 use super::grid::Grid;
+use super::mirror::{Plan, images};
 use super::place::{PlaceError, Placed, place};
 use super::search::{self, QuantiseError, Quantised, Score, quantise};
-use super::singularities::tidy;
 use super::sizes::{self, SizesError};
-use super::wish::{WishError, wish};
-use crate::measure::{Seam, sharp_edges, total_area};
-use crate::mesh::{FaceMap, HalfedgeMap, PolygonMesh, PolygonMeshError, TriangleMesh, VertexMap};
+use super::wish::WishError;
+use crate::measure::Seam;
+use crate::mesh::{
+    FaceMap, HalfedgeId, HalfedgeMap, PolygonMesh, PolygonMeshError, TriangleMesh, VertexId,
+    VertexMap,
+};
+use crate::mirror::Doubled;
 use crate::progress::{Cancelled, Progress};
 use crate::sphere_map::SphereMap;
 
@@ -50,6 +54,15 @@ impl Settings {
     }
 }
 
+/// What of a surface's triangles the quads have to heed besides the shape.
+#[derive(Clone, Copy, Debug)]
+pub struct Guides<'a> {
+    /// Edges that are lines whatever their angle, on both sides of each.
+    pub marked: &'a HalfedgeMap<bool>,
+    /// That the surface is its own image in a plane, and the quads shall be.
+    pub mirror: Option<&'a Doubled>,
+}
+
 /// Quads that flow, not yet laid on the surface.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Flow {
@@ -63,6 +76,8 @@ pub struct Flow {
     pub sizes: FaceMap<f64>,
     /// Vertices that belong on the surface's sharp edges, and where.
     pub seams: Vec<Seam>,
+    /// The image of every vertex, where the quads are their own image in a plane.
+    pub images: Option<Vec<VertexId>>,
     /// How they were found.
     pub report: Report,
 }
@@ -117,6 +132,9 @@ pub enum Error {
         /// How many halfedges that are.
         n_doubled: usize,
     },
+    /// The grid is not its own image in the plane of symmetry.
+    #[error("the grid is not its own image in the plane")]
+    Uneven,
     /// The grid has too many or too few quads.
     #[error("the grid has {n_quads} quads; {n_wanted} were wanted")]
     Count {
@@ -167,81 +185,98 @@ fn is_near(n_quads: usize, n_wanted: usize) -> bool {
 /// [`enum@Error`].
 pub fn flow(
     map: &SphereMap,
-    marked: &HalfedgeMap<bool>,
+    guides: Guides<'_>,
     settings: &Settings,
     progress: &Progress,
 ) -> Result<Flow, Error> {
     let mesh = map.mesh();
-    let sizes = sizes::sizes(
-        mesh,
-        settings.n_quads,
-        &settings.sizes,
-        &progress.part("", 0.0, 0.05),
-    )?;
-    let Dressed {
-        field,
-        wish,
-        sharp,
-        lines,
-    } = dress(
-        (mesh, marked),
-        settings,
-        &sizes,
-        &progress.part("", 0.05, 0.2),
-    )?;
-    let dressed = (&field, &wish);
-    let part = progress.part("", 0.2, 0.95);
-    let ends = progress.part("", 0.95, 1.0);
-    let mut found = None;
-    if !lines.is_empty() {
-        found = match whole(mesh, dressed, &lines, settings, &part) {
-            Ok(whole) => Some(lay(map, whole, &lines, &ends)?),
-            // Fewer fixed points leave more ways out.
-            Err(Error::Quantise(_) | Error::Doubled { .. } | Error::Count { .. }) => None,
-            Err(error) => return Err(error),
-        };
-        let on_seams = |laid: &Laid| laid.seams.iter().map(|seam| seam.line.length()).sum();
-        found = found.filter(|laid| creases::are_clear(mesh, &sharp, on_seams(laid)));
+    let part = progress.part("", 0.0, 0.05);
+    let mut sizes = sizes::sizes(mesh, settings.n_quads, &settings.sizes, &part)?;
+    if let Some(doubled) = guides.mirror {
+        for face in mesh.face_ids().take(mesh.n_faces() / 2) {
+            sizes[doubled.image_of_face(face)] = sizes[face];
+        }
     }
-    let laid = match found {
-        Some(laid) => laid,
-        None => lay(map, whole(mesh, dressed, &[], settings, &part)?, &[], &ends)?,
-    };
+    let part = progress.part("", 0.05, 0.2);
+    let dressed = dress(mesh, (guides, &sizes), settings, &part)?;
+    let laid = search(map, guides, (&dressed, settings), progress)?;
     let Laid {
         whole: Quantised { grid, report, .. },
         placed,
         seams,
+        images,
     } = laid;
+    let field = dressed.field;
+    let n_lines = dressed.plan.plane.len() + dressed.plan.beside.len();
     Ok(Flow {
         mesh: PolygonMesh::from_faces(placed.positions, &grid.quads)?,
         sphere: placed.sphere,
         crosses: field.directions,
         sizes,
+        images,
         report: Report {
             n_quads: grid.quads.len(),
             n_cones: field.indices.iter().filter(|&&k| k != 0).count(),
             score: report.score,
             n_trials: report.n_trials,
             n_stuck: report.n_stuck,
-            n_creases: [lines.len(), seams.len()],
+            n_creases: [n_lines, seams.len()],
         },
         seams,
     })
+}
+
+/// The quads with the lines of sharp edges, or without them where that gives none or where too
+/// few are met.
+fn search(
+    map: &SphereMap,
+    guides: Guides<'_>,
+    (dressed, settings): (&Dressed, &Settings),
+    progress: &Progress,
+) -> Result<Laid, Error> {
+    let mesh = map.mesh();
+    let worn = (&dressed.field, &dressed.wish);
+    let part = progress.part("", 0.2, 0.95);
+    let ends = progress.part("", 0.95, 1.0);
+    if !dressed.plan.beside.is_empty() {
+        let plan = &dressed.plan;
+        let laid = whole(mesh, worn, plan, settings, &part)
+            .and_then(|whole| lay(map, guides.mirror, (whole, plan), &ends));
+        match laid {
+            Ok(laid) => {
+                let is_sharp = |h: &HalfedgeId| dressed.sharp[*h];
+                let on_seams = (laid.seams.iter().map(|seam| seam.line.length())).sum::<f64>();
+                let off = plan.plane.iter();
+                let off = off.map(|line| line.length_of(mesh, |h| !is_sharp(h)));
+                if creases::are_clear(mesh, &dressed.sharp, on_seams - off.sum::<f64>()) {
+                    return Ok(laid);
+                }
+            }
+            // Fewer fixed points leave more ways out.
+            Err(
+                Error::Quantise(_) | Error::Doubled { .. } | Error::Count { .. } | Error::Uneven,
+            ) => {}
+            Err(error) => return Err(error),
+        }
+    }
+    let plan = planned(guides.mirror, &dressed.field, Vec::new());
+    let whole = whole(mesh, worn, &plan, settings, &part)?;
+    lay(map, guides.mirror, (whole, &plan), &ends)
 }
 
 /// The grid of whole periods, with the ends of lines among its vertices.
 fn whole(
     mesh: &TriangleMesh,
     (field, wish): (&OrientationField, &HalfedgeMap<DVec2>),
-    lines: &[Line],
+    plan: &Plan,
     settings: &Settings,
     progress: &Progress,
 ) -> Result<Quantised, Error> {
-    let followed: Vec<_> = lines.iter().map(|line| line.halfedges.clone()).collect();
     let part = progress.part("", 0.0, 0.2);
-    let complex = flatten(mesh, field, wish.clone(), &followed, &part)?;
+    let mut complex = flatten(mesh, field, wish.clone(), &plan.paths(), &part)?;
+    complex.chains.ties = plan.ties();
     let mut is_wanted = VertexMap::filled(mesh.n_vertices(), false);
-    for &end in lines.iter().flat_map(|line| &line.ends) {
+    for &end in plan.lines().flat_map(|line| &line.ends) {
         is_wanted[end] = true;
     }
     let complex = keep_cones(complex, &is_wanted, &progress.part("", 0.2, 0.25))?;
@@ -256,19 +291,26 @@ struct Laid {
     whole: Quantised,
     placed: Placed,
     seams: Vec<Seam>,
+    images: Option<Vec<VertexId>>,
 }
 
 fn lay(
     map: &SphereMap,
-    whole: Quantised,
-    lines: &[Line],
+    mirror: Option<&Doubled>,
+    (whole, plan): (Quantised, &Plan),
     progress: &Progress,
 ) -> Result<Laid, Error> {
     let grid = &whole.grid;
     let quads = (grid.n_vertices, &grid.quads[..]);
     let mut placed = place(map, quads, &grid.cells, &[], progress)?;
     let laid = (&grid.quads[..], &placed.positions[..]);
-    let seams = creases::seams(map.mesh(), lines, &whole.complex, laid);
+    let lines: Vec<&Line> = plan.lines().collect();
+    let seams = creases::seams(map.mesh(), &lines, &whole.complex, laid);
+    let images = match mirror {
+        Some(_) => Some(images(quads, &seams[..plan.plane.len()]).ok_or(Error::Uneven)?),
+        None => None,
+    };
+    let seams: Vec<Seam> = seams.into_iter().flatten().collect();
     if !seams.is_empty() {
         let goals: BTreeMap<u32, DVec3> = seams.iter().flat_map(creases::goals).collect();
         let goals: Vec<_> = goals.into_iter().collect();
@@ -278,57 +320,7 @@ fn lay(
         whole,
         placed,
         seams,
-    })
-}
-
-/// What a surface wears before it is made flat.
-struct Dressed {
-    field: OrientationField,
-    wish: HalfedgeMap<DVec2>,
-    sharp: HalfedgeMap<bool>,
-    lines: Vec<Line>,
-}
-
-/// The field, its singularities tidied for quads of edge length `h`, the wish, and the lines of
-/// sharp edges if these are clear.
-fn dress(
-    (mesh, marked): (&TriangleMesh, &HalfedgeMap<bool>),
-    settings: &Settings,
-    sizes: &FaceMap<f64>,
-    progress: &Progress,
-) -> Result<Dressed, Error> {
-    let sharp_angle = settings.sharp_angle.unwrap_or(f64::INFINITY);
-    let pull = field::Settings {
-        sharp_angle: sharp_angle.min(PI),
-        ..settings.field
-    };
-    let sharp = sharp_edges(mesh, sharp_angle);
-    let sharp = sharp
-        .iter()
-        .zip(marked.iter())
-        .map(|(a, b)| a | b)
-        .collect();
-    let mut field = field::orient(mesh, &pull, &progress.part("", 0.0, 0.5))?;
-    tidy(mesh, &mut field, sizes);
-    let h = (total_area(mesh) / settings.n_quads.max(1) as f64).sqrt();
-    let all = creases::lines(mesh, &field, &sharp, h);
-    let on_lines = all.iter().map(|line| line.length(mesh)).sum();
-    let are_clear = creases::are_clear(mesh, &sharp, on_lines);
-    if are_clear {
-        creases::attract(mesh, &mut field, &sharp, sizes);
-    }
-    field::settle(mesh, &mut field, &pull, &progress.part("", 0.5, 0.7))?;
-    let wish = wish(mesh, &field, sizes, &progress.part("", 0.7, 1.0))?;
-    let lines = if are_clear {
-        creases::lines(mesh, &field, &sharp, h)
-    } else {
-        Vec::new()
-    };
-    Ok(Dressed {
-        field,
-        wish,
-        sharp,
-        lines,
+        images,
     })
 }
 
@@ -357,8 +349,11 @@ mod tests {
         SphereMap::prove(mesh, sphere).unwrap()
     }
 
-    fn unmarked(map: &SphereMap) -> HalfedgeMap<bool> {
-        HalfedgeMap::filled(3 * map.mesh().n_faces(), false)
+    fn guides(marked: &HalfedgeMap<bool>) -> Guides<'_> {
+        Guides {
+            marked,
+            mirror: None,
+        }
     }
 
     #[test]
@@ -366,14 +361,15 @@ mod tests {
         for seed in 0..3 {
             let map = radial_map(shapes::blob(seed, 20));
             let settings = Settings::new(300);
-            let found = flow(&map, &unmarked(&map), &settings, &Progress::none()).unwrap();
+            let marked = HalfedgeMap::filled(3 * map.mesh().n_faces(), false);
+            let found = flow(&map, guides(&marked), &settings, &Progress::none()).unwrap();
             let n = found.mesh.n_faces();
             assert_eq!((found.mesh.n_quads(), found.mesh.n_vertices()), (n, n + 2));
             assert!(n.abs_diff(300) <= 6, "{n}");
             assert_eq!(found.crosses.len(), map.mesh().n_faces());
             assert!(found.sphere.iter().all(|p| p.is_finite()));
             assert_eq!(
-                flow(&map, &unmarked(&map), &settings, &Progress::none()),
+                flow(&map, guides(&marked), &settings, &Progress::none()),
                 Ok(found)
             );
         }
@@ -384,9 +380,10 @@ mod tests {
         let token = CancelToken::new();
         token.cancel();
         let map = radial_map(shapes::sphere(8));
+        let marked = HalfedgeMap::filled(3 * map.mesh().n_faces(), false);
         let result = flow(
             &map,
-            &unmarked(&map),
+            guides(&marked),
             &Settings::new(50),
             &Progress::silent(token),
         );

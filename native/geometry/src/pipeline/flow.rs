@@ -4,10 +4,12 @@ use serde::Serialize;
 
 use super::Settings;
 use super::clock::Clock;
+use super::mirror;
 use crate::deform::{self, Deformed, Flowing, Target};
 use crate::embed::{self, Covered};
 use crate::measure::area_vector;
 use crate::mesh::{HalfedgeMap, PolygonMesh, TriangleMesh, VertexId, VertexMap};
+use crate::mirror::Doubled;
 use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
 use crate::sphere::{self, Adaptive};
@@ -83,6 +85,17 @@ pub struct FlowedPart {
     pub n_failed: usize,
     pub sphere: sphere::Report,
     pub flowed: Flowed,
+    /// Whether it is its own image in the plane; an error says why not, none was asked.
+    pub mirrored: Option<Result<(), String>>,
+}
+
+/// What quads of a part are to be.
+#[derive(Clone, Copy)]
+pub struct Asked<'a> {
+    pub n_quads: usize,
+    pub settings: &'a Settings,
+    /// The axis across the plane of symmetry, which goes through the origin.
+    pub axis: Option<usize>,
 }
 
 /// An even surface and what its quads are fitted to.
@@ -90,6 +103,8 @@ struct Ground<'a> {
     even: SphereMap,
     /// The edges of the even surface that lie along the target's sharp or marked ones.
     marked: HalfedgeMap<bool>,
+    /// Whose image is whose, where the even surface is its own image.
+    doubled: Option<Doubled>,
     sphere: sphere::Report,
     target: &'a Target,
     style: flow::Settings,
@@ -102,11 +117,12 @@ struct Ground<'a> {
 pub fn flow_part(
     map: &SphereMap,
     target: &Target,
-    (n_quads, settings): (usize, &Settings),
+    asked: Asked<'_>,
     clock: &mut Clock,
     progress: &Progress<'_>,
 ) -> Result<Result<FlowedPart, String>, Cancelled> {
-    let part = progress.part("sphere", 0.0, 0.2);
+    let (n_quads, settings) = (asked.n_quads, asked.settings);
+    let part = progress.part("sphere", 0.0, 0.15);
     let even = clock.step("sphere", || {
         told(even(map, target, (n_quads, settings.seed), &part))
     })?;
@@ -114,25 +130,45 @@ pub fn flow_part(
         Ok(even) => even,
         Err(reason) => return Ok(Err(reason)),
     };
-    let ground = Ground {
+    let mut ground = Ground {
         even,
         marked,
+        doubled: None,
         sphere,
         target,
         style: settings.flow(n_quads),
     };
-    let mut best: Result<FlowedPart, String> = Err(String::new());
-    let mut from = 0.2;
-    for attempt in Attempt::ALL {
-        let to = from + 0.6 * (1.0 - from);
-        let found = ground.attempt(attempt, clock, &progress.part("", from, to))?;
-        from = to;
-        best = better(best, found);
-        if best.as_ref().is_ok_and(|best| best.n_failed == 0) {
-            break;
+    let Some(axis) = asked.axis else {
+        return ground.best(clock, &progress.part("", 0.15, 1.0));
+    };
+    let part = progress.part("sphere", 0.15, 0.2);
+    let symmetric = clock.step("sphere", || {
+        told(mirror::symmetric(&ground.even, axis, &part))
+    })?;
+    let reason = match symmetric.flatten() {
+        Ok((even, doubled)) => {
+            let marked = doubled.carried(ground.even.mesh(), &ground.marked);
+            let usual = (
+                std::mem::replace(&mut ground.even, even),
+                std::mem::replace(&mut ground.marked, marked),
+            );
+            ground.doubled = Some(doubled);
+            match ground.best(clock, &progress.part("", 0.2, 0.6))? {
+                Ok(best) => return Ok(Ok(best)),
+                Err(reason) => {
+                    (ground.even, ground.marked) = usual;
+                    ground.doubled = None;
+                    reason
+                }
+            }
         }
-    }
-    Ok(best)
+        Err(reason) => reason,
+    };
+    let best = ground.best(clock, &progress.part("", 0.6, 1.0))?;
+    Ok(best.map(|best| FlowedPart {
+        mirrored: Some(Err(reason)),
+        ..best
+    }))
 }
 
 /// The one of which fewer quads fail, the first of equals; of two reasons the first.
@@ -149,6 +185,26 @@ fn better(
 }
 
 impl Ground<'_> {
+    /// The first of the attempts in which nothing fails, or the one in which least does.
+    fn best(
+        &self,
+        clock: &mut Clock,
+        progress: &Progress<'_>,
+    ) -> Result<Result<FlowedPart, String>, Cancelled> {
+        let mut best: Result<FlowedPart, String> = Err(String::new());
+        let mut from = 0.0;
+        for attempt in Attempt::ALL {
+            let to = from + 0.6 * (1.0 - from);
+            let found = self.attempt(attempt, clock, &progress.part("", from, to))?;
+            from = to;
+            best = better(best, found);
+            if best.as_ref().is_ok_and(|best| best.n_failed == 0) {
+                break;
+            }
+        }
+        Ok(best)
+    }
+
     /// Quads that flow by some settings, laid on the target.
     fn attempt(
         &self,
@@ -158,9 +214,7 @@ impl Ground<'_> {
     ) -> Result<Result<FlowedPart, String>, Cancelled> {
         let part = progress.part("flow", 0.0, 0.75);
         let settings = attempt.settings(&self.style);
-        let found = clock.step("flow", || {
-            told(find((&self.even, &self.marked), &settings, &part))
-        })?;
+        let found = clock.step("flow", || told(self.find(&settings, &part)))?;
         let (found, covered) = match found {
             Ok(found) => found,
             Err(reason) => return Ok(Err(reason)),
@@ -177,7 +231,15 @@ impl Ground<'_> {
         let settings = deform::Settings::default();
         let fit = || deform::deform_flow(&self.even, flowing, self.target, &settings, &part);
         let deformed = clock.step("deform", || told(fit().map_err(pipeline::Error::from)))?;
-        Ok(deformed.map(|deformed| FlowedPart {
+        let mirrored = found.images.as_deref().zip(self.doubled.as_ref());
+        let evened = |deformed| match mirrored {
+            Some((images, doubled)) => {
+                mirror::even_out(&deformed, images, doubled.axis(), self.target)
+            }
+            None => deformed,
+        };
+        Ok(deformed.map(evened).map(|deformed| FlowedPart {
+            mirrored: self.doubled.as_ref().map(|_| Ok(())),
             n_failed: self.n_failed(&deformed),
             deformed,
             sphere: self.sphere.clone(),
@@ -187,6 +249,21 @@ impl Ground<'_> {
                 cover: covered.report,
             },
         }))
+    }
+
+    /// The flow of the surface, laid on its sphere.
+    fn find(
+        &self,
+        settings: &flow::Settings,
+        progress: &Progress<'_>,
+    ) -> Result<(flow::Flow, Covered), pipeline::Error> {
+        let guides = flow::Guides {
+            marked: &self.marked,
+            mirror: self.doubled.as_ref(),
+        };
+        let found = flow::flow(&self.even, guides, settings, &progress.part("", 0.0, 0.95))?;
+        let covered = embed::cover(&found.mesh, &found.sphere, &progress.part("", 0.95, 1.0))?;
+        Ok((found, covered))
     }
 
     /// How many quads fail the gate.
@@ -261,15 +338,4 @@ fn triangles(mesh: &PolygonMesh) -> TriangleMesh {
         mesh.faces().map(corners).collect(),
     )
     .expect("a cover of the sphere by triangles is a closed surface")
-}
-
-/// The flow of a surface, laid on its sphere.
-fn find(
-    (map, marked): (&SphereMap, &HalfedgeMap<bool>),
-    settings: &flow::Settings,
-    progress: &Progress<'_>,
-) -> Result<(flow::Flow, Covered), pipeline::Error> {
-    let found = flow::flow(map, marked, settings, &progress.part("", 0.0, 0.95))?;
-    let covered = embed::cover(&found.mesh, &found.sphere, &progress.part("", 0.95, 1.0))?;
-    Ok((found, covered))
 }

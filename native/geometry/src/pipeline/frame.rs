@@ -3,6 +3,7 @@
 
 use glam::DVec3;
 
+use super::mirror::{self, Mirror, Plane};
 use crate::clean::{self, Cleaned};
 use crate::mesh::{FaceId, FaceMap, Id, PolygonMesh, TriangleMesh, bounds};
 use crate::progress::Progress;
@@ -19,20 +20,36 @@ impl Prepared {
     /// Cleans first: welding needs the input's own coordinates, and a vertex without a face must
     /// not stretch the frame.
     pub fn new(input: &PolygonMesh, progress: &Progress<'_>) -> Result<Self, clean::Error> {
+        Ok(Self::facing(input, Mirror::Off, progress)?.0)
+    }
+
+    /// The same with the plane of symmetry that is asked for, which then goes through the frame's
+    /// origin.
+    pub fn facing(
+        input: &PolygonMesh,
+        wanted: Mirror,
+        progress: &Progress<'_>,
+    ) -> Result<(Self, Option<Plane>), clean::Error> {
         let Cleaned {
             mesh,
             source,
             report,
         } = clean::clean(input, progress)?;
         progress.check()?;
-        let frame = Frame::new(bounds(mesh.positions()));
-        let mesh = mesh.with_positions(frame.enter(mesh.positions()));
-        Ok(Self {
-            mesh,
+        let mut frame = Frame::new(bounds(mesh.positions()));
+        let mut entered = mesh.with_positions(frame.enter(mesh.positions()));
+        let plane = mirror::find(&entered, &frame, wanted, progress)?;
+        if let Some(plane) = plane {
+            frame.centre[plane.axis] = plane.at;
+            entered = mesh.with_positions(frame.enter(mesh.positions()));
+        }
+        let prepared = Self {
+            mesh: entered,
             frame,
             report,
             source,
-        })
+        };
+        Ok((prepared, plane))
     }
 
     /// The material of each triangle.

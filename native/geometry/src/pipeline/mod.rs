@@ -14,6 +14,7 @@ mod flow;
 mod frame;
 mod join;
 mod marks;
+mod mirror;
 mod part;
 mod report;
 mod settings;
@@ -23,7 +24,8 @@ mod verbs;
 pub use clock::{Step, peak_memory_mb};
 pub use error::Error;
 pub use flow::{Attempt, Flowed};
-pub use report::{PartReport, Reduced, Report};
+pub use mirror::{Mirror, Plane, Through};
+pub use report::{Mirrored, PartReport, Reduced, Report};
 pub use settings::{Kind, MAX_FACES, MIN_FACES, Primitive, Settings, Style};
 pub use verbs::{Decimated, EmbedReport, EmbeddedParts, decimate, embed};
 
@@ -39,7 +41,8 @@ use clock::Clock;
 use frame::Prepared;
 use join::Joined;
 use marks::Marks;
-use part::{PartJob, Wanted};
+use mirror::Role;
+use part::{PartJob, PartResult, Wanted};
 
 /// The version of Orbflow.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -111,12 +114,13 @@ fn run(
 ) -> Result<Remeshed, Error> {
     let mut clock = Clock::default();
     let stage = progress.part("clean", 0.0, 0.02);
-    let prepared = clock.step("clean", || Prepared::new(input.mesh, &stage))?;
+    let facing = || Prepared::facing(input.mesh, settings.mirror, &stage);
+    let (prepared, plane) = clock.step("clean", facing)?;
     let marks = Marks::new(&input, &prepared.frame)?;
     let joined = run_parts(
         (&prepared, &marks),
         input.reduced,
-        settings,
+        (settings, plane),
         (predictor, progress),
         &mut clock,
     )?;
@@ -144,6 +148,7 @@ fn run(
         input: measure::topology(input.mesh, progress)?,
         clean: prepared.report,
         output: measure::topology(&mesh, progress)?,
+        plane,
         embedding: joined.embedding,
         parts: joined.parts,
         score,
@@ -164,7 +169,7 @@ fn run(
 fn run_parts(
     (prepared, marks): (&Prepared, &Marks),
     reduced: Option<&PolygonMesh>,
-    settings: &Settings,
+    (settings, plane): (&Settings, Option<Plane>),
     (predictor, progress): (&dyn OffsetPredictor, &Progress<'_>),
     clock: &mut Clock,
 ) -> Result<Joined, Error> {
@@ -175,10 +180,18 @@ fn run_parts(
     let reduced = reduced.map(|r| r.with_positions(prepared.frame.enter(r.positions())));
     let total = prepared.mesh.n_faces();
     let mut done = 0;
-    let mut results = Vec::with_capacity(parts.len());
-    for (part, n_faces) in parts.into_iter().zip(shares) {
+    let roles = match plane {
+        Some(plane) => mirror::roles(&parts, plane, progress)?,
+        None => vec![Role::Alone(None); parts.len()],
+    };
+    let mut results: Vec<Option<PartResult>> = Vec::with_capacity(parts.len());
+    for ((part, n_faces), role) in parts.into_iter().zip(shares).zip(&roles) {
         let from = share_of_work(done, total);
         done += part.n_faces();
+        if let Role::ImageOf(_) = role {
+            results.push(None);
+            continue;
+        }
         let progress = progress.part("", from, share_of_work(done, total));
         let job = PartJob {
             part,
@@ -186,13 +199,20 @@ fn run_parts(
                 n_faces,
                 settings,
                 predictor,
+                mirror: (role, plane),
                 reduced: reduced.as_ref(),
                 marks,
             },
         };
-        results.push(job.run(clock, &progress)?);
+        results.push(Some(job.run(clock, &progress)?));
     }
-    Ok(join::join(results))
+    for (i, role) in roles.iter().enumerate() {
+        if let (&Role::ImageOf(of), Some(plane)) = (role, plane) {
+            let made = results[of].as_ref();
+            results[i] = made.map(|made| mirror::image_of(made, of, plane.axis));
+        }
+    }
+    Ok(join::join(results.into_iter().flatten().collect()))
 }
 
 /// A result that cannot be scored is a result all the same; only a cancellation ends the run.

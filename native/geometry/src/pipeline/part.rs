@@ -6,13 +6,14 @@ use glam::DVec3;
 
 use super::Error;
 use super::clock::Clock;
-use super::flow::{Flowed, flow_part};
+use super::flow::{Asked, Flowed, flow_part};
 use super::marks::Marks;
-use super::report::{PartReport, Reduced};
+use super::mirror::{self, Faced, Plane, Role, face};
+use super::report::{Mirrored, PartReport, Reduced};
 use super::settings::{Kind, Primitive, Settings};
 use crate::embed::{Embedded, OffsetPredictor};
 use crate::hierarchy::CollapseHierarchy;
-use crate::mesh::{PolygonMesh, TriangleMesh, VertexId};
+use crate::mesh::{HalfedgeMap, PolygonMesh, TriangleMesh, VertexId};
 use crate::progress::{Cancelled, Progress};
 use crate::sphere::Adaptive;
 use crate::sphere_map::SphereMap;
@@ -36,6 +37,8 @@ pub struct Wanted<'a> {
     pub n_faces: usize,
     pub settings: &'a Settings,
     pub predictor: &'a dyn OffsetPredictor,
+    /// What the part is to the plane of symmetry, which goes through the origin.
+    pub mirror: (&'a Role, Option<Plane>),
     /// The part as somebody else reduced it.
     pub reduced: Option<&'a PolygonMesh>,
     pub marks: &'a Marks,
@@ -60,8 +63,15 @@ impl PartJob<'_> {
     pub fn run(self, clock: &mut Clock, progress: &Progress<'_>) -> Result<PartResult, Error> {
         let Self { part, wanted } = self;
         let (n_input_faces, area) = (part.n_faces(), measure::total_area(&part));
+        let marked = wanted.marks.on(&part);
+        let Faced {
+            mesh: part,
+            marked,
+            axis,
+            refused,
+        } = face((part, marked), wanted.mirror);
         let stage = progress.part("decimate", 0.0, 0.2);
-        let reduction = clock.step("decimate", || wanted.reduce(&part, &stage))?;
+        let reduction = clock.step("decimate", || wanted.reduce((&part, axis), &stage))?;
         let stage = progress.part("embed", 0.2, 0.5);
         let (hierarchy, embedded) = clock.step("embed", || {
             let hierarchy = collapse(reduction.mesh, &stage)?;
@@ -69,9 +79,10 @@ impl PartJob<'_> {
             Ok::<_, Error>((hierarchy, embedded))
         })?;
         let embedding = embedded.report;
-        let target = clock.step("deform", || wanted.target(part, progress))?;
+        let target = clock.step("deform", || wanted.target((part, &marked), progress))?;
         let stage = progress.part("", 0.5, 1.0);
-        let made = wanted.make((&hierarchy, embedded.map), &target, clock, &stage)?;
+        let start = (&hierarchy, embedded.map);
+        let made = wanted.make(start, (&target, axis), clock, &stage)?;
         let report = PartReport {
             n_input_faces,
             n_asked_faces: wanted.n_faces,
@@ -80,6 +91,7 @@ impl PartJob<'_> {
             decimate: reduction.report,
             embedding,
             flow: made.flow,
+            mirrored: refused.or(made.mirrored),
             sphere: made.sphere,
             deform: made.deformed.report,
         };
@@ -98,19 +110,24 @@ impl Wanted<'_> {
     fn make(
         &self,
         (hierarchy, map): (&CollapseHierarchy, SphereMap),
-        target: &deform::Target,
+        (target, axis): (&deform::Target, Option<usize>),
         clock: &mut Clock,
         progress: &Progress<'_>,
     ) -> Result<Made, Error> {
         let mut flow = None;
         let (mut from, primitive) = (0.0, self.settings.primitive());
         if primitive == Primitive::Flow {
-            let wanted = (self.n_faces, self.settings);
+            let wanted = Asked {
+                n_quads: self.n_faces,
+                settings: self.settings,
+                axis,
+            };
             match flow_part(&map, target, wanted, clock, &progress.part("", 0.0, 0.9))? {
                 Ok(part) => {
                     return Ok(Made {
                         deformed: part.deformed,
                         flow: Some(part.flowed),
+                        mirrored: part.mirrored.map(told),
                         sphere: Some(part.sphere),
                     });
                 }
@@ -126,9 +143,11 @@ impl Wanted<'_> {
         let deformed = clock.step("deform", || {
             deform::deform(map, primitive, target, &settings, &stage)
         })?;
+        let only_flow = || Err("only quads that flow can be".to_owned());
         Ok(Made {
             deformed,
             flow,
+            mirrored: axis.map(|_| told(only_flow())),
             sphere: placed.report,
         })
     }
@@ -136,20 +155,23 @@ impl Wanted<'_> {
     /// The part with the edges that the result is to have too.
     fn target(
         &self,
-        part: TriangleMesh,
+        (part, marked): (TriangleMesh, &HalfedgeMap<bool>),
         progress: &Progress<'_>,
     ) -> Result<deform::Target, Cancelled> {
         progress.check()?;
         let sharp = measure::sharp_edges(&part, self.settings.sharp_angle.to_radians());
-        let marked = self.marks.on(&part);
         let either = sharp.iter().zip(marked.iter()).map(|(a, b)| a | b);
         deform::Target::with_features(part, &either.collect(), progress)
     }
 
     /// Brings the part down to the size of the map.
-    fn reduce(&self, part: &TriangleMesh, progress: &Progress<'_>) -> Result<Reduction, Error> {
+    fn reduce(
+        &self,
+        (part, axis): (&TriangleMesh, Option<usize>),
+        progress: &Progress<'_>,
+    ) -> Result<Reduction, Error> {
         let full = Cow::Borrowed(part);
-        let (start, reduced) = match self.reduced.map(|mesh| usable(mesh, &full)) {
+        let (start, reduced) = match self.reduced.map(|mesh| usable(mesh, (&full, axis))) {
             Some(Ok(mesh)) => {
                 let n_faces = mesh.n_faces();
                 (Cow::Owned(mesh), Some(Reduced::Used { n_faces }))
@@ -230,7 +252,15 @@ impl Wanted<'_> {
 struct Made {
     deformed: deform::Deformed,
     flow: Option<Flowed>,
+    mirrored: Option<Mirrored>,
     sphere: Option<sphere::Report>,
+}
+
+fn told(mirrored: Result<(), String>) -> Mirrored {
+    match mirrored {
+        Ok(()) => Mirrored::Used,
+        Err(reason) => Mirrored::Refused { reason },
+    }
 }
 
 /// A primitive and the map that carries it to the surface.
@@ -272,7 +302,10 @@ fn embed_hierarchy(
 }
 
 /// The triangles of a mesh that was reduced outside, or why they cannot stand for the part.
-fn usable(reduced: &PolygonMesh, full: &TriangleMesh) -> Result<TriangleMesh, String> {
+fn usable(
+    reduced: &PolygonMesh,
+    (full, axis): (&TriangleMesh, Option<usize>),
+) -> Result<TriangleMesh, String> {
     let faces: Option<Vec<[VertexId; 3]>> =
         reduced.faces().map(|face| face.try_into().ok()).collect();
     let faces = faces.ok_or("it has faces that are not triangles")?;
@@ -288,5 +321,8 @@ fn usable(reduced: &PolygonMesh, full: &TriangleMesh) -> Result<TriangleMesh, St
     if found != wanted {
         return Err(format!("its Euler number is {found}, not {wanted}"));
     }
-    Ok(mesh)
+    match axis {
+        Some(axis) => mirror::doubled(&mesh, axis),
+        None => Ok(mesh),
+    }
 }

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::clock::Step;
 use super::flow::Flowed;
+use super::mirror::Plane;
 use super::settings::Settings;
 use crate::measure::Topology;
 use crate::score::Score;
@@ -22,6 +23,8 @@ pub struct Report {
     pub clean: clean::Report,
     /// The mesh that went out.
     pub output: Topology,
+    /// The plane of symmetry; none when none was asked for or there is none.
+    pub plane: Option<Plane>,
     /// The embeddings of all parts together.
     pub embedding: embed::Report,
     /// Each part, in the order of its first face.
@@ -53,10 +56,30 @@ pub struct PartReport {
     pub embedding: embed::Report,
     /// Whether its quads flow; none when that was not asked for.
     pub flow: Option<Flowed>,
+    /// Whether it is its own image in the plane; none where there is no plane.
+    pub mirrored: Option<Mirrored>,
     /// How the adaptive primitive, or the even surface for the flow, was made; none for a fixed one.
     pub sphere: Option<sphere::Report>,
     /// How the primitive was laid on the surface.
     pub deform: deform::Report,
+}
+
+/// Whether a part is its own image, or that of another, in the plane of symmetry.
+#[derive(Clone, PartialEq, Eq, Debug, Serialize)]
+#[serde(tag = "status", rename_all = "kebab-case")]
+pub enum Mirrored {
+    /// It is its own image.
+    Used,
+    /// It is the image of another part.
+    Image {
+        /// Which part, counted from 0.
+        of: usize,
+    },
+    /// It is not.
+    Refused {
+        /// Why not.
+        reason: String,
+    },
 }
 
 /// Whether a mesh that was reduced outside could be used.

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Error;
+use super::mirror::Mirror;
 use crate::{flow, score};
 
 /// The fewest faces that can be asked for: those of a tetrahedron.
@@ -131,6 +132,8 @@ pub struct Settings {
     /// Edges at which the surface turns by more than so many degrees, from 0 to 180, get edges of
     /// the result along them; 180 keeps none but those that are marked.
     pub sharp_angle: f64,
+    /// In which plane the quads that flow are each other's images; nothing else asks for it.
+    pub mirror: Mirror,
     /// Where the adaptive primitive's samples start; equal seeds give equal bytes.
     pub seed: u64,
     /// How many threads to use; 0 uses every core. The result does not depend on it.
@@ -148,6 +151,7 @@ impl Default for Settings {
             primitive: None,
             style: Style::default(),
             sharp_angle: 40.0,
+            mirror: Mirror::Off,
             seed: 0,
             threads: 0,
             score: None,

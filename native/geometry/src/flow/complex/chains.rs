@@ -18,10 +18,21 @@ struct Term {
     factor: IVec2,
 }
 
+/// A line and another that is its image in every metric that is symmetric in a plane.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Tie {
+    /// Which two lines.
+    pub lines: [usize; 2],
+    /// The sum along the first, turned by so many quarters and conjugated, is that along the other.
+    pub turns: u8,
+}
+
 /// Lines as sums over halfedges; none unless a complex was told to follow some.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct Chains {
     n_lines: usize,
+    /// Which of the lines are each other's images.
+    pub ties: Vec<Tie>,
     /// The terms of each halfedge in the order of the lines; an edge's may be on either side.
     terms: Vec<Vec<Term>>,
 }
@@ -102,6 +113,7 @@ impl Complex {
     pub fn follow_lines(&mut self, lines: &[Vec<HalfedgeId>]) {
         let mut chains = Chains {
             n_lines: lines.len(),
+            ties: Vec::new(),
             terms: vec![Vec::new(); self.twins.len()],
         };
         for (i, line) in lines.iter().enumerate() {

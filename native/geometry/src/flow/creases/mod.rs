@@ -18,7 +18,7 @@ use crate::mesh::{HalfedgeId, HalfedgeMap, TriangleMesh, VertexId, VertexMap};
 
 pub use attract::attract;
 pub use pick::{Line, are_clear, lines};
-pub use rows::rows;
+pub use rows::{rows, tie_rows};
 pub use seams::{goals, seams};
 
 /// A line that turns by more than this at a vertex has a corner there (53°).

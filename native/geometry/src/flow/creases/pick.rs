@@ -69,9 +69,10 @@ pub fn are_clear(mesh: &TriangleMesh, sharp: &HalfedgeMap<bool>, on_lines: f64) 
 }
 
 impl Line {
-    /// How long it is.
-    pub fn length(&self, mesh: &TriangleMesh) -> f64 {
-        length(mesh, &self.halfedges)
+    /// How long those of its edges are that `counts` says.
+    pub fn length_of(&self, mesh: &TriangleMesh, counts: impl Fn(&HalfedgeId) -> bool) -> f64 {
+        let counted: Vec<HalfedgeId> = self.halfedges.iter().copied().filter(counts).collect();
+        length(mesh, &counted)
     }
 }
 

@@ -1,6 +1,8 @@
 //! Lines as linear equations on the periods.
 
-use crate::flow::complex::Complex;
+use glam::IVec2;
+
+use crate::flow::complex::{Complex, Tie, Turn};
 use crate::flow::periods::{Part, real_row};
 use crate::flow::rings::off_axis;
 
@@ -8,10 +10,28 @@ use crate::flow::rings::off_axis;
 const OBLIQUE: f64 = 0.5;
 
 /// The equations that put the lines of a complex with chosen periods along the axes they are
-/// wished to be near; none for lines that are wished to be oblique.
+/// wished to be near; none for lines that are wished to be oblique, and those of ties.
 pub fn rows(complex: &Complex) -> Vec<Vec<f64>> {
-    let lines = 0..complex.chains.n_lines();
+    let is_tied = |line: &usize| (complex.chains.ties.iter()).any(|tie| tie.lines.contains(line));
+    let lines = (0..complex.chains.n_lines()).filter(|line| !is_tied(line));
     lines.filter_map(|line| row(complex, line)).collect()
+}
+
+/// The equations that make the lines of ties each other's images, two for each tie.
+pub fn tie_rows(complex: &Complex) -> Vec<Vec<f64>> {
+    let ties = complex.chains.ties.iter();
+    ties.flat_map(|&tie| tied(complex, tie)).collect()
+}
+
+fn tied(complex: &Complex, Tie { lines, turns }: Tie) -> [Vec<f64>; 2] {
+    let [own, image] = lines.map(|line| complex.coefficients_along(line));
+    let own: Vec<IVec2> = own.iter().map(|x| x.turned(turns)).collect();
+    // Conjugation keeps the real part and turns the other round.
+    [(Part::Real, -1.0), (Part::Imaginary, 1.0)].map(|(part, sign)| {
+        let own = real_row(&own, part).into_iter();
+        let image = real_row(&image, part).into_iter();
+        image.zip(own).map(|(a, b)| a + sign * b).collect()
+    })
 }
 
 fn row(complex: &Complex, line: usize) -> Option<Vec<f64>> {

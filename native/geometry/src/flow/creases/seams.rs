@@ -23,17 +23,18 @@ const PULL: f64 = 0.1;
 /// Share of the distance between two of them that is kept in one round.
 const LEAST_GAP: f64 = 0.3;
 
-/// The seam of every line that runs along an axis of a whole metric; it may touch singularities.
+/// The seam of every line; none where it does not run along an axis of a whole metric. It may touch
+/// singularities.
 ///
 /// `lines` are those of `complex.chains` as they were on the mesh, `positions` first ones of the
 /// quads' vertices. Of the ways that arrive the nearest is taken. A vertex inside one seam is in no
 /// other.
 pub fn seams(
     mesh: &TriangleMesh,
-    lines: &[Line],
+    lines: &[&Line],
     complex: &Complex,
     (quads, positions): (&[[u32; 4]], &[DVec3]),
-) -> Vec<Seam> {
+) -> Vec<Option<Seam>> {
     let walker = Walker::new(quads, positions.len());
     let mut is_taken = vec![false; positions.len()];
     let mut seams = Vec::new();
@@ -43,14 +44,15 @@ pub fn seams(
         let line = polyline(mesh, line);
         let laid = walks.map(|walk| lay(&line, &walk, positions));
         let best = laid.reduce(|a, b| if b.0 < a.0 { b } else { a });
-        let Some((_, seam)) = best.filter(|(miss, seam)| is_near(seam, *miss)) else {
-            continue;
-        };
-        let inner = &seam.vertices[1..seam.vertices.len() - 1];
-        if inner.iter().any(|v| is_taken[v.index()]) {
-            continue;
-        }
-        for v in inner {
+        let near = best.filter(|(miss, seam)| is_near(seam, *miss));
+        let seam = near.map(|(_, seam)| seam).filter(|seam| {
+            let mut inner = seam.vertices[1..seam.vertices.len() - 1].iter();
+            !inner.any(|v| is_taken[v.index()])
+        });
+        for v in seam
+            .iter()
+            .flat_map(|s| &s.vertices[1..s.vertices.len() - 1])
+        {
             is_taken[v.index()] = true;
         }
         seams.push(seam);

@@ -11,6 +11,7 @@
 //! ```
 
 mod charts;
+mod mirror;
 mod settle;
 mod shape;
 mod smooth;
@@ -27,7 +28,8 @@ use crate::progress::{Cancelled, Progress};
 use crate::sparse::NotPositiveDefinite;
 
 pub use charts::{Charts, halfedges};
-pub use settle::settle;
+pub use mirror::mirror;
+pub use settle::{settle, settle_along};
 pub use shape::{Axes, axes, in_chart};
 
 /// How the field follows the shape.
@@ -104,6 +106,19 @@ pub fn orient(
     settings: &Settings,
     progress: &Progress,
 ) -> Result<OrientationField, FieldError> {
+    let none = HalfedgeMap::filled(3 * mesh.n_faces(), false);
+    orient_along(mesh, (settings, &none), progress)
+}
+
+/// As [`orient`], with some edges that are followed as sharp ones are, whatever their angle.
+///
+/// # Errors
+/// As those of [`orient`].
+pub fn orient_along(
+    mesh: &TriangleMesh,
+    (settings, along): (&Settings, &HalfedgeMap<bool>),
+    progress: &Progress,
+) -> Result<OrientationField, FieldError> {
     if !mesh.is_closed() || mesh.euler_number() != 2 {
         return Err(FieldError::NotASphere {
             n_borders: mesh.border_loops().len(),
@@ -117,7 +132,7 @@ pub fn orient(
     let charts = Charts::new(mesh);
     let axes = shape::axes(mesh);
     progress.at(0.0)?;
-    let pulls = shape::pulls(mesh, &charts, &axes, settings);
+    let pulls = shape::pulls(mesh, (&charts, &axes), settings, along);
     let crosses = smooth::smooth(mesh, &charts, &pulls, progress)?;
     let angles: FaceMap<f64> = crosses.iter().map(|z| z.to_angle() / 4.0).collect();
     let (turns, residuals) = turns::match_crosses(mesh, &charts, &angles);

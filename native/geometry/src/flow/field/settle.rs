@@ -7,7 +7,7 @@ use glam::DVec2;
 use super::charts::{Charts, angle_between};
 use super::shape::{self, Axes, Pull};
 use super::{FieldError, OrientationField, Settings};
-use crate::mesh::{FaceMap, Id, TriangleMesh};
+use crate::mesh::{FaceMap, HalfedgeMap, Id, TriangleMesh};
 use crate::progress::Progress;
 use crate::sparse::SymmetricMatrix;
 
@@ -32,9 +32,23 @@ pub fn settle(
     settings: &Settings,
     progress: &Progress,
 ) -> Result<(), FieldError> {
+    let none = HalfedgeMap::filled(3 * mesh.n_faces(), false);
+    settle_along(mesh, field, (settings, &none), progress)
+}
+
+/// As [`settle`], with some edges that are followed as sharp ones are, whatever their angle.
+///
+/// # Errors
+/// As those of [`settle`].
+pub fn settle_along(
+    mesh: &TriangleMesh,
+    field: &mut OrientationField,
+    (settings, along): (&Settings, &HalfedgeMap<bool>),
+    progress: &Progress,
+) -> Result<(), FieldError> {
     let charts = Charts::new(mesh);
     let axes = shape::axes(mesh);
-    let pulls = shape::pulls(mesh, &charts, &axes, settings);
+    let pulls = shape::pulls(mesh, (&charts, &axes), settings, along);
     progress.at(0.2)?;
     let mut system = SymmetricMatrix::new(mesh.n_faces());
     for (face, pull) in pulls.iter_ids() {

@@ -4,7 +4,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 use super::charts::{Charts, halfedges};
 use crate::measure::{area_vector, vertex_normals};
-use crate::mesh::{FaceId, FaceMap, HalfedgeId, TriangleMesh, VertexMap};
+use crate::mesh::{FaceId, FaceMap, HalfedgeId, HalfedgeMap, TriangleMesh, VertexMap};
 
 /// What a face asks of the cross on it.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -52,12 +52,13 @@ pub fn in_chart(direction: DVec3, axes: &Axes) -> DVec2 {
 }
 
 /// What every face asks: principal directions with weight min(1, alignment · d · |κ₁ − κ₂|)²,
-/// d the root of the mean face area, and edges sharper than `sharp_angle` with a weight of 4.
+/// d the root of the mean face area, and edges sharper than `sharp_angle` and those `along` which
+/// crosses have to lie, with a weight of 4.
 pub fn pulls(
     mesh: &TriangleMesh,
-    charts: &Charts,
-    axes: &FaceMap<Axes>,
+    (charts, axes): (&Charts, &FaceMap<Axes>),
     settings: &super::Settings,
+    along: &HalfedgeMap<bool>,
 ) -> FaceMap<Pull> {
     let sharp_cosine = settings.sharp_angle.cos();
     let areas: FaceMap<f64> = mesh
@@ -68,7 +69,8 @@ pub fn pulls(
     let shapes = smooth_shapes(mesh, axes, &areas, sharp_cosine);
     mesh.face_ids()
         .map(|face| {
-            sharp_pull(mesh, charts, axes, (face, sharp_cosine)).unwrap_or_else(|| {
+            let is_line = |h: HalfedgeId| along[h] || is_sharp(mesh, axes, (h, sharp_cosine));
+            line_pull(charts, face, is_line).unwrap_or_else(|| {
                 let Axes { u, v, .. } = axes[face];
                 let [ku, kv] = [shapes[face] * u, shapes[face] * v];
                 // κ₁ − κ₂ and twice the angle of the direction of κ₁.
@@ -83,20 +85,20 @@ pub fn pulls(
         .collect()
 }
 
-/// Along the sharp edges of a face, if it has any.
-fn sharp_pull(
+fn is_sharp(
     mesh: &TriangleMesh,
-    charts: &Charts,
     axes: &FaceMap<Axes>,
-    (face, sharp_cosine): (FaceId, f64),
-) -> Option<Pull> {
-    let is_sharp = |h: &HalfedgeId| {
-        let across = mesh.twin(*h).map(|twin| axes[twin.face()].normal);
-        across.is_some_and(|normal| normal.dot(axes[face].normal) < sharp_cosine)
-    };
+    (h, sharp_cosine): (HalfedgeId, f64),
+) -> bool {
+    let across = mesh.twin(h).map(|twin| axes[twin.face()].normal);
+    across.is_some_and(|normal| normal.dot(axes[h.face()].normal) < sharp_cosine)
+}
+
+/// Along the lines that bound a face, if it has any.
+fn line_pull(charts: &Charts, face: FaceId, is_line: impl Fn(HalfedgeId) -> bool) -> Option<Pull> {
     let mut n = 0;
     let mut sum = DVec2::ZERO;
-    for h in halfedges(face).into_iter().filter(is_sharp) {
+    for h in halfedges(face).into_iter().filter(|&h| is_line(h)) {
         sum += fourth_power(charts.edge(h).normalize_or(DVec2::X));
         n += 1;
     }

@@ -136,7 +136,7 @@ struct Problem<'a> {
     start: Rounding,
     /// The wanted periods, scaled so that the wish has the wanted area.
     wish: Periods,
-    /// The equations of the lines that are kept.
+    /// The equations of the ties and lines that are kept.
     lines: Vec<Vec<f64>>,
     /// The energy as a square form of periods.
     energy: Dense,
@@ -169,6 +169,8 @@ impl<'a> Problem<'a> {
         let covariance = energy.inverse();
         let wish = basis.wish.iter().map(|x| x * scale).collect();
         let mut start = Rounding::new(start, wish, covariance.clone());
+        let mut kept = creases::tie_rows(complex);
+        kept.retain(|row| impose_row(&mut start, row));
         let mut lines = creases::rows(complex);
         let dear = |start: &Rounding, row: &[f64]| {
             let off = dot(row, &start.wish);
@@ -176,10 +178,11 @@ impl<'a> Problem<'a> {
             off * off > DEAREST * n_quads * variance.max(1e-9)
         };
         lines.retain(|row| !dear(&start, row) && impose_row(&mut start, row));
+        kept.append(&mut lines);
         Ok(Self {
             wish: start.wish.clone(),
             start,
-            lines,
+            lines: kept,
             covariance,
             energy,
             n_quads,
