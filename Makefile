@@ -5,11 +5,13 @@ VENV = .venv-$(PYTHON_VERSION)
 BIN = $(VENV)/bin
 # On Linux the wheel is linked against an old C library, so that it runs wherever Blender runs.
 WHEEL_FLAGS ?= $(if $(filter Linux,$(shell uname)),--zig --compatibility manylinux_2_28)
+# The meshes that benchmarks and evaluation read.
+DATA ?= ../shared/data
 SOURCES := $(shell find Cargo.toml Cargo.lock native/*/Cargo.toml native/*/src native/python -type f 2>/dev/null)
 ADDON := $(shell find addon -type f ! -name "*.pyc")
 
 .SECONDARY: # keep the stamps
-.PHONY: help demo test test-rust test-training test-python wheel zip fixtures pictures bench lint format ci clean
+.PHONY: help demo test test-rust test-training test-python wheel zip fixtures pictures bench evaluation lint format ci clean
 
 help: ## Prints this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -41,6 +43,13 @@ pictures: $(VENV)/bench.stamp ## Makes every picture of docs/pictures/ anew
 bench: $(VENV)/bench.stamp ## Measures the figures of docs/benchmarks.md anew
 	cargo build --release --locked -p orbflow-cli
 	$(BIN)/python tests/benchmarks/measure.py --write docs/benchmarks.md
+
+evaluation: $(VENV)/venv.stamp ## Measures the figures of docs/evaluation.md anew
+	cargo build --release --locked -p orbflow-cli --features train
+	mkdir -p dist
+	target/release/orbflow evaluate $(DATA)/quaternius --other $(DATA)/dev --shapes 250 --held-out 20 \
+		--most 40 --weights native/training/runs/2026-11-24/weights.orbflow --finish --report dist/evaluation.json
+	$(BIN)/python scripts/evaluation.py dist/evaluation.json docs/evaluation.md
 
 lint: $(VENV)/lint.stamp ## Runs every check that is not a test
 	cargo fmt --all --check

@@ -45,6 +45,9 @@ pub enum Command {
     /// Train weights of the graph network, or go on where training was cut
     #[cfg(feature = "train")]
     Train(crate::train::Train),
+    /// Measure what trained weights reach on shapes, seen in training and never seen
+    #[cfg(feature = "train")]
+    Evaluate(crate::evaluate::Evaluate),
 }
 
 #[derive(Args, Debug)]
@@ -245,6 +248,8 @@ impl Arguments {
             }
             #[cfg(feature = "train")]
             Command::Train(_) => ([None, None], None, None),
+            #[cfg(feature = "train")]
+            Command::Evaluate(a) => ([None, None], Some(&a.report), None),
         };
         for mesh in meshes.into_iter().flatten() {
             if output_format(mesh, wanted).is_none() {

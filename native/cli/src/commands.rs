@@ -24,6 +24,8 @@ pub fn run(command: &Command) -> Result<(), Error> {
         Command::Score(arguments) => score(arguments, &interrupt),
         #[cfg(feature = "train")]
         Command::Train(arguments) => Ok(crate::train::train(arguments, &interrupt)?),
+        #[cfg(feature = "train")]
+        Command::Evaluate(arguments) => crate::evaluate::evaluate(arguments, &interrupt),
     }
 }
 

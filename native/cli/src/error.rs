@@ -50,6 +50,10 @@ pub enum Error {
     #[cfg(feature = "train")]
     #[error(transparent)]
     Train(#[from] crate::train::Error),
+    /// There are no shapes to evaluate.
+    #[cfg(feature = "train")]
+    #[error(transparent)]
+    Collect(#[from] orbflow_training::collect::CollectError),
     /// The signal handler cannot be set.
     #[error("cannot watch for ctrl-c: {0}")]
     Signal(#[from] ctrlc::Error),

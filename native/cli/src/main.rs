@@ -7,6 +7,8 @@ mod arguments;
 mod bar;
 mod commands;
 mod error;
+#[cfg(feature = "train")]
+mod evaluate;
 mod inputs;
 mod interrupt;
 mod outputs;

@@ -26,10 +26,14 @@ fn network(path: &Path) -> Result<NetworkPredictor, Error> {
         path: path.to_owned(),
         cause,
     };
-    let bytes = fs::read(path).map_err(|cause| Error::OpenWeights {
-        path: path.to_owned(),
-        cause,
-    })?;
-    let weights = Weights::from_bytes(&bytes).map_err(wrong)?;
-    NetworkPredictor::new(&weights).map_err(wrong)
+    NetworkPredictor::new(&read_weights(path)?).map_err(wrong)
+}
+
+/// Reads a file of weights.
+pub fn read_weights(path: &Path) -> Result<Weights, Error> {
+    let path = path.to_owned();
+    match fs::read(&path) {
+        Err(cause) => Err(Error::OpenWeights { path, cause }),
+        Ok(bytes) => Weights::from_bytes(&bytes).map_err(|cause| Error::Weights { path, cause }),
+    }
 }

@@ -20,15 +20,8 @@ pub struct Train {
     /// The folder of the run: checkpoint, log.jsonl, shapes.json, weights
     #[arg(short, long, value_name = "RUN")]
     pub output: PathBuf,
-    /// Folders of meshes to train on besides the made shapes
-    #[arg(value_name = "FOLDER")]
-    pub folders: Vec<PathBuf>,
-    /// How many shapes to make for training
-    #[arg(long, value_name = "N", default_value_t = 400)]
-    pub shapes: usize,
-    /// How many more to make and hold back
-    #[arg(long, value_name = "N", default_value_t = 40)]
-    pub held_out: usize,
+    #[command(flatten)]
+    pub data: Data,
     /// How many steps the whole run has
     #[arg(long, value_name = "N", default_value_t = Settings::default().n_steps)]
     pub steps: usize,
@@ -38,6 +31,31 @@ pub struct Train {
     /// On what data and under which licences, for the weights file
     #[arg(long, value_name = "TEXT", default_value = "")]
     pub provenance: String,
+}
+
+/// What is trained on and what is held back.
+#[derive(Args, Debug)]
+pub struct Data {
+    /// Folders of meshes besides the made shapes; some files are held back, by a hash of their names
+    #[arg(value_name = "FOLDER")]
+    pub folders: Vec<PathBuf>,
+    /// How many shapes to make for training
+    #[arg(long, value_name = "N", default_value_t = 400)]
+    pub shapes: usize,
+    /// How many more to make and hold back
+    #[arg(long, value_name = "N", default_value_t = 40)]
+    pub held_out: usize,
+}
+
+impl Data {
+    /// Where its shapes come from.
+    pub fn sources(&self) -> Sources {
+        Sources {
+            n_shapes: self.shapes,
+            n_held_out: self.held_out,
+            folders: self.folders.clone(),
+        }
+    }
 }
 
 /// Why training ends early.
@@ -81,11 +99,7 @@ pub fn train(arguments: &Train, interrupt: &Interrupt) -> Result<(), Error> {
         seed: arguments.seed,
         ..Settings::default()
     };
-    let sources = Sources {
-        n_shapes: arguments.shapes,
-        n_held_out: arguments.held_out,
-        folders: arguments.folders.clone(),
-    };
+    let sources = arguments.data.sources();
     let run = &arguments.output;
     fs::create_dir_all(run).map_err(|cause| write_error(run, cause))?;
     let levels = settings.sizes.levels.clone();

@@ -65,7 +65,7 @@ pub fn half_turns() -> [DMat3; 4] {
 }
 
 /// The eigenvectors of a symmetric matrix, largest eigenvalue first, by Jacobi rotations.
-fn eigenvectors(matrix: DMat3) -> [DVec3; 3] {
+pub fn eigenvectors(matrix: DMat3) -> [DVec3; 3] {
     let (mut a, mut vectors) = (matrix, DMat3::IDENTITY);
     // Converges quadratically; five or six rounds reach the last bit.
     for _ in 0..12 {

@@ -1,10 +1,12 @@
 //! Collects shapes to train on and shapes to hold back.
 
+use std::fmt::Display;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use orbflow_geometry::clean::clean;
+use orbflow_geometry::mesh::TriangleMesh;
 use orbflow_geometry::mesh::io::{Format, read};
 use orbflow_geometry::progress::{Cancelled, Progress};
 use rayon::prelude::*;
@@ -23,6 +25,8 @@ const HELD_OUT_PCT: u64 = 15;
 const LEAST_FACES: usize = 32;
 /// No file gives more parts, so that one with a hundred rivets does not outweigh the rest.
 const MOST_PARTS: usize = 3;
+/// Items between two reports of progress.
+pub const N_AT_ONCE: usize = 32;
 
 /// Where shapes come from.
 #[derive(Clone, PartialEq, Eq, Debug, Serialize, Deserialize)]
@@ -33,6 +37,52 @@ pub struct Sources {
     pub n_held_out: usize,
     /// Folders of meshes, read with their subfolders.
     pub folders: Vec<PathBuf>,
+}
+
+/// Whether training sees a shape.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// It is trained on.
+    Training,
+    /// It is held back.
+    HeldOut,
+    /// It is of a folder that training was not given.
+    Other,
+}
+
+/// What one or a few shapes are made from.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Item {
+    /// On which side its shapes are.
+    pub side: Side,
+    origin: Origin,
+}
+
+#[derive(Clone, PartialEq, Eq, Debug)]
+enum Origin {
+    Seed(u64),
+    File(PathBuf),
+}
+
+/// A closed mesh of genus 0.
+#[derive(Clone, Debug)]
+pub struct Shape {
+    /// Where it comes from.
+    pub name: String,
+    /// The folder that its file is in.
+    pub category: String,
+    /// Itself.
+    pub mesh: TriangleMesh,
+}
+
+/// What was made of shapes, each with its side.
+#[derive(Clone, Debug)]
+pub struct Gathered<T> {
+    /// In the order of the items.
+    pub all: Vec<(Side, T)>,
+    /// Files without a usable part, and why.
+    pub left_out: Vec<(PathBuf, String)>,
 }
 
 /// Shapes to train on and shapes that training never sees.
@@ -60,8 +110,8 @@ pub enum CollectError {
     /// The user asked to stop.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// There is nothing to train on.
-    #[error("there is no shape to train on: {n_left_out} files were left out")]
+    /// There is no usable shape.
+    #[error("there is no usable shape: {n_left_out} files were left out")]
     Empty {
         /// How many files had no usable part.
         n_left_out: usize,
@@ -77,38 +127,16 @@ pub fn collect(
     levels: &[usize],
     progress: &Progress,
 ) -> Result<Collection, CollectError> {
-    let mut collection = Collection::default();
-    let mut paths = Vec::new();
-    for folder in &sources.folders {
-        list(folder, &mut paths)?;
-    }
-    let made = |first: u64, n: usize| first..first + n as u64;
-    let seeds: Vec<u64> = made(0, sources.n_shapes)
-        .chain(made(FIRST_HELD_OUT, sources.n_held_out))
-        .collect();
-    let n_all = (paths.len() + seeds.len()).max(1) as f64;
-    for (i, seeds) in seeds.chunks(32).enumerate() {
-        progress.at(32.0 * i as f64 / n_all)?;
-        let samples = seeds.par_iter().map(|&seed| {
-            let name = format!("shape {seed}");
-            (
-                seed >= FIRST_HELD_OUT,
-                Sample::new(name, shape(seed), levels),
-            )
-        });
-        for (is_held_out, sample) in samples.collect::<Vec<_>>() {
-            // A shape that does not collapse is not worth more than leaving it out.
-            collection.side(is_held_out).extend(sample);
-        }
-    }
-    for (i, chunk) in paths.chunks(32).enumerate() {
-        progress.at((seeds.len() as f64 + 32.0 * i as f64) / n_all)?;
-        let read = chunk.par_iter().map(|path| from_file(path, levels));
-        for (path, samples) in chunk.iter().zip(read.collect::<Vec<_>>()) {
-            match samples {
-                Ok(samples) => collection.side(is_held_out(path)).extend(samples),
-                Err(reason) => collection.left_out.push((path.clone(), reason)),
-            }
+    let sample = |_, shape: Shape| Sample::new(shape.name, shape.mesh, levels);
+    let gathered = gather(&items(sources)?, sample, N_AT_ONCE, progress)?;
+    let mut collection = Collection {
+        left_out: gathered.left_out,
+        ..Collection::default()
+    };
+    for (side, sample) in gathered.all {
+        match side {
+            Side::Training => collection.training.push(sample),
+            Side::HeldOut | Side::Other => collection.held_out.push(sample),
         }
     }
     if collection.training.is_empty() {
@@ -118,12 +146,90 @@ pub fn collect(
     Ok(collection)
 }
 
-impl Collection {
-    fn side(&mut self, is_held_out: bool) -> &mut Vec<Sample> {
-        if is_held_out {
-            &mut self.held_out
+/// What there is to train on and to hold back: seeds first, then files in the order of their paths.
+///
+/// # Errors
+/// [`CollectError::Read`].
+pub fn items(sources: &Sources) -> Result<Vec<Item>, CollectError> {
+    let mut paths = Vec::new();
+    for folder in &sources.folders {
+        list(folder, &mut paths)?;
+    }
+    let made = |side: Side, first: u64, n: usize| {
+        let seeds = first..first + n as u64;
+        seeds.map(move |seed| Item {
+            side,
+            origin: Origin::Seed(seed),
+        })
+    };
+    let mut items: Vec<Item> = made(Side::Training, 0, sources.n_shapes)
+        .chain(made(Side::HeldOut, FIRST_HELD_OUT, sources.n_held_out))
+        .collect();
+    items.extend(paths.into_iter().map(|path| Item {
+        side: if is_held_out(&path) {
+            Side::HeldOut
         } else {
-            &mut self.training
+            Side::Training
+        },
+        origin: Origin::File(path),
+    }));
+    Ok(items)
+}
+
+/// The files of a folder that training was not given.
+///
+/// # Errors
+/// [`CollectError::Read`].
+pub fn others(folder: &Path) -> Result<Vec<Item>, CollectError> {
+    let mut paths = Vec::new();
+    list(folder, &mut paths)?;
+    let item = |path| Item {
+        side: Side::Other,
+        origin: Origin::File(path),
+    };
+    Ok(paths.into_iter().map(item).collect())
+}
+
+/// Makes something of every shape, of so many items at once; the same for any number of threads.
+///
+/// # Errors
+/// [`Cancelled`]; a file whose shapes cannot be used is left out and named.
+pub fn gather<T: Send, E: Display>(
+    items: &[Item],
+    make: impl Fn(Side, Shape) -> Result<T, E> + Sync,
+    n_at_once: usize,
+    progress: &Progress,
+) -> Result<Gathered<T>, Cancelled> {
+    let (mut all, mut left_out) = (Vec::with_capacity(items.len()), Vec::new());
+    for (i, chunk) in items.chunks(n_at_once).enumerate() {
+        progress.at((n_at_once * i) as f64 / items.len() as f64)?;
+        let made = chunk.par_iter().map(|item| {
+            let shapes = item.shapes()?.into_iter();
+            let made = shapes.map(|shape| make(item.side, shape).map_err(|e| e.to_string()));
+            made.collect::<Result<Vec<T>, String>>()
+        });
+        for (item, made) in chunk.iter().zip(made.collect::<Vec<_>>()) {
+            match (made, &item.origin) {
+                (Ok(made), _) => all.extend(made.into_iter().map(|one| (item.side, one))),
+                (Err(reason), Origin::File(path)) => left_out.push((path.clone(), reason)),
+                // A shape that does not collapse is not worth more than leaving it out.
+                (Err(_), Origin::Seed(_)) => {}
+            }
+        }
+    }
+    Ok(Gathered { all, left_out })
+}
+
+impl Item {
+    /// The largest usable parts, or why there are none.
+    fn shapes(&self) -> Result<Vec<Shape>, String> {
+        match &self.origin {
+            Origin::Seed(seed) => Ok(vec![Shape {
+                name: format!("shape {seed}"),
+                category: "made".to_owned(),
+                mesh: shape(*seed),
+            }]),
+            Origin::File(path) => from_file(path),
         }
     }
 }
@@ -161,7 +267,7 @@ fn list(folder: &Path, paths: &mut Vec<PathBuf>) -> Result<(), CollectError> {
 }
 
 /// The largest usable parts of a file, or why there are none.
-fn from_file(path: &Path, levels: &[usize]) -> Result<Vec<Sample>, String> {
+fn from_file(path: &Path) -> Result<Vec<Shape>, String> {
     let format = Format::from_path(path).ok_or("not a mesh")?;
     let bytes = fs::read(path).map_err(|e| e.to_string())?;
     let file = read(&bytes, format).map_err(|e| e.to_string())?;
@@ -173,11 +279,13 @@ fn from_file(path: &Path, levels: &[usize]) -> Result<Vec<Sample>, String> {
     if parts.is_empty() {
         return Err("no closed part of genus 0 that is large enough".to_owned());
     }
-    let named = parts.into_iter().enumerate().map(|(i, part)| {
-        let name = format!("{} part {i}", path.display());
-        Sample::new(name, part, levels).map_err(|e| e.to_string())
+    let folder = path.parent().and_then(Path::file_name).unwrap_or_default();
+    let named = parts.into_iter().enumerate().map(|(i, mesh)| Shape {
+        name: format!("{} part {i}", path.display()),
+        category: folder.to_string_lossy().into_owned(),
+        mesh,
     });
-    named.collect()
+    Ok(named.collect())
 }
 
 #[cfg(test)]

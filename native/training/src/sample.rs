@@ -94,16 +94,24 @@ impl Sample {
         })
     }
 
-    /// The distortion that the solver reaches on the finest level.
+    /// Where the solver puts the vertices of the finest level.
     ///
     /// # Errors
     /// [`SampleError`].
-    pub fn solver_energy(&self) -> Result<f64, SampleError> {
+    pub fn solver_sphere(&self) -> Result<Vec<DVec3>, SampleError> {
         let quiet = Progress::none();
         let hierarchy = collapse_to_tetrahedron(self.mesh.clone(), &quiet)?;
         let (solver, settings) = (embed::Solver::default(), embed::Settings::default());
         let embedded = embed::embed(&hierarchy, &solver, &settings, &quiet)?;
-        Ok(embedded.report.energy)
+        Ok(embedded.map.sphere().as_slice().to_vec())
+    }
+
+    /// The distortion of [`Sample::solver_sphere`].
+    ///
+    /// # Errors
+    /// [`SampleError`].
+    pub fn solver_energy(&self) -> Result<f64, SampleError> {
+        Ok(self.quality(&self.solver_sphere()?).energy)
     }
 
     /// Assesses what was proposed for the finest level.

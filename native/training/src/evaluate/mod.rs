@@ -1,4 +1,12 @@
 //! What a network reaches on shapes.
+//!
+//! Training asks for medians of energy and folds, every interval. A [`report`] says everything, with
+//! the solver and the radial projection beside it, for shapes trained on and shapes never seen.
+
+pub mod outcome;
+pub mod rebuilt;
+pub mod report;
+pub mod rotation;
 
 use orbflow_network::net::Network;
 use serde::Serialize;

@@ -1,0 +1,193 @@
+//! What solver, radial projection and network reach on one shape.
+
+use glam::DVec3;
+use orbflow_geometry::decimate::{self, simplify};
+use orbflow_geometry::embed::{OffsetPredictor, Solver};
+use orbflow_geometry::mesh::{PolygonMesh, TriangleMesh};
+use orbflow_geometry::pipeline;
+use orbflow_geometry::progress::Progress;
+use orbflow_network::NetworkPredictor;
+use orbflow_network::net::Network;
+use orbflow_network::weights::{ReadWeightsError, Weights};
+use serde::Serialize;
+use thiserror::Error;
+
+use super::rebuilt::Rebuilt;
+use super::rotation::angles_between;
+use crate::collect::Shape;
+use crate::parts::refined;
+use crate::sample::{Sample, SampleError};
+
+/// Faces of the whole mesh whose finished maps are compared.
+const WHOLE_FACES: usize = 16_000;
+
+/// What is evaluated.
+#[derive(Debug)]
+pub struct Subject {
+    network: Network,
+    predictor: NetworkPredictor,
+    levels: Vec<usize>,
+}
+
+/// What was reached on one shape.
+#[derive(Clone, PartialEq, Debug, Serialize)]
+pub struct Outcome {
+    /// Where the shape comes from.
+    pub name: String,
+    /// The folder that its file is in, or "made".
+    pub category: String,
+    /// How many vertices the level has that is proposed.
+    pub n_vertices: usize,
+    /// The directions from the centre.
+    pub radial: Proposed,
+    /// What the network proposes, before any repair.
+    pub network: Proposed,
+    /// The solver's map of the level.
+    pub solver: Proposed,
+    /// Angles between the network's points and the solver's after the best rotation: the median and
+    /// what 90 % stay below, in degrees.
+    pub angles_deg: [f64; 2],
+    /// The finished map of the whole mesh.
+    pub whole: Option<Whole>,
+}
+
+/// How good a proposal for the level is.
+#[derive(Clone, Copy, PartialEq, Debug, Serialize)]
+pub struct Proposed {
+    /// Its distortion, in the mean log form of the report.
+    pub energy: f64,
+    /// Folded triangles of a hundred.
+    pub folds_pct: f64,
+    /// The shape that a sphere of even points becomes by it.
+    #[serde(flatten)]
+    pub rebuilt: Rebuilt,
+}
+
+/// Finished maps of a whole mesh, from the solver alone and from the network's proposal.
+#[derive(Clone, Copy, PartialEq, Debug, Serialize)]
+pub struct Whole {
+    /// How many vertices it has.
+    pub n_vertices: usize,
+    /// From the solver alone.
+    pub solver: Cost,
+    /// From the network's proposal.
+    pub network: Cost,
+    /// Whether the proposal was given up for the solver's map.
+    pub gave_up: bool,
+}
+
+/// What a finished map is worth and what it took.
+#[derive(Clone, Copy, PartialEq, Debug, Serialize)]
+pub struct Cost {
+    /// Its distortion.
+    pub energy: f64,
+    /// Relaxations of single vertices.
+    pub n_relaxations: u64,
+    /// Processor time of the process, the collapse included; none where the system does not tell.
+    pub cpu_ms: Option<f64>,
+}
+
+/// Why a shape cannot be evaluated.
+#[derive(Debug, Error)]
+pub enum OutcomeError {
+    /// The level cannot be prepared or solved.
+    #[error(transparent)]
+    Sample(#[from] SampleError),
+    /// The whole mesh cannot be simplified.
+    #[error(transparent)]
+    Simplify(#[from] decimate::Error),
+    /// The whole mesh cannot be embedded.
+    #[error(transparent)]
+    Embed(#[from] pipeline::Error),
+}
+
+impl Subject {
+    /// Makes trained weights ready.
+    ///
+    /// # Errors
+    /// [`ReadWeightsError`] when the parameters are not those of the header.
+    pub fn new(weights: &Weights) -> Result<Self, ReadWeightsError> {
+        Ok(Self {
+            network: weights.network()?,
+            predictor: NetworkPredictor::new(weights)?,
+            levels: weights.header.sizes.levels.clone(),
+        })
+    }
+
+    /// Measures one shape; `finish` asks for the finished maps of the whole mesh too.
+    ///
+    /// # Errors
+    /// [`OutcomeError`].
+    pub fn outcome(&self, shape: Shape, finish: bool) -> Result<Outcome, OutcomeError> {
+        let Shape {
+            name,
+            category,
+            mesh,
+        } = shape;
+        let whole = finish.then(|| self.whole(&mesh)).transpose()?;
+        let sample = Sample::new(name, mesh, &self.levels)?;
+        let proposed = |directions: &[DVec3]| {
+            let sphere: Vec<DVec3> = directions.iter().map(|d| d.normalize_or_zero()).collect();
+            let quality = sample.quality(&sphere);
+            Proposed {
+                energy: quality.energy,
+                folds_pct: quality.folds_pct,
+                rebuilt: Rebuilt::new(&sample.mesh, &sphere),
+            }
+        };
+        let network = self.network.forward(&sample.prepared.pyramid);
+        let solver = sample.solver_sphere()?;
+        Ok(Outcome {
+            category,
+            n_vertices: sample.mesh.n_vertices(),
+            radial: proposed(sample.mesh.positions()),
+            network: proposed(&network),
+            solver: proposed(&solver),
+            angles_deg: {
+                let angles = angles_between(&network, &solver);
+                [0.5, 0.9].map(|share| angles[(share * (angles.len() - 1) as f64) as usize])
+            },
+            whole,
+            name: sample.name,
+        })
+    }
+
+    fn whole(&self, mesh: &TriangleMesh) -> Result<Whole, OutcomeError> {
+        let settings = decimate::Settings {
+            n_faces: WHOLE_FACES,
+        };
+        let mesh = simplify(
+            &refined(mesh.clone(), WHOLE_FACES),
+            &settings,
+            &Progress::none(),
+        )?
+        .mesh;
+        let n_vertices = mesh.n_vertices();
+        let faces: Vec<_> = mesh.faces().iter().map(|f| f.map(|v| v.0)).collect();
+        let mesh = PolygonMesh::from_faces(mesh.positions().to_vec(), &faces)
+            .expect("a triangle mesh is a polygon mesh");
+        let (solver, _) = finished(&mesh, &Solver::default())?;
+        let (network, gave_up) = finished(&mesh, &self.predictor)?;
+        Ok(Whole {
+            n_vertices,
+            solver,
+            network,
+            gave_up,
+        })
+    }
+}
+
+/// Embeds a mesh on one thread; also says whether the proposal was given up.
+fn finished(
+    mesh: &PolygonMesh,
+    predictor: &dyn OffsetPredictor,
+) -> Result<(Cost, bool), pipeline::Error> {
+    let report = pipeline::embed(mesh, 1, predictor, &Progress::none())?.report;
+    let step = report.steps.iter().find(|step| step.name == "embed");
+    let cost = Cost {
+        energy: report.embedding.energy,
+        n_relaxations: report.embedding.n_relaxations,
+        cpu_ms: step.and_then(|step| step.cpu_ms),
+    };
+    Ok((cost, report.embedding.repair.fell_back_to_solver))
+}

@@ -1,0 +1,124 @@
+"""Fills the tables of docs/evaluation.md: evaluation.py REPORT.json docs/evaluation.md.
+
+The report is that of `orbflow evaluate`. Each table goes between its markers
+`<!-- measured: NAME -->` and `<!-- end -->`.
+"""
+
+import json
+import re
+import sys
+from pathlib import Path
+from typing import Any
+
+SIDES = {
+    "training": "trained on",
+    "held_out": "held back",
+    "other": "other folders",
+}
+PREDICTORS = {
+    "radial": "radial projection",
+    "network": "network",
+    "solver": "solver",
+}
+Figures = dict[str, Any]
+
+
+def line(cells: list[str]) -> str:
+    """One line of a table."""
+    return f"| {' | '.join(cells)} |"
+
+
+def table(header: list[str], rows: list[list[str]]) -> str:
+    """A table of Markdown."""
+    return "\n".join([line(header), "|---" * len(header) + "|", *map(line, rows)])
+
+
+def proposals(sides: Figures) -> str:
+    """What each predictor proposes for the level, by side."""
+    rows = []
+    for side, report in sides.items():
+        overall = report["overall"]
+        for name, title in PREDICTORS.items():
+            p = overall[name]
+            rows.append(
+                [
+                    f"{SIDES[side]} ({overall['n_shapes']})" if name == "radial" else "",
+                    title,
+                    f"{p['energy']:.2f}",
+                    f"{p['energy_ratio']:.2f} ({p['energy_ratio_p90']:.2f})",
+                    f"{p['folds_pct']:.1f} %",
+                    *(
+                        " / ".join(f"{value:.0f}" for value in p[key])
+                        for key in ("precision_pct", "recall_pct", "f1_pct")
+                    ),
+                ]
+            )
+    header = ["shapes", "proposal", "distortion", "of the solver's (90 %)", "folded"]
+    return table([*header, "precision", "recall", "F1"], rows)
+
+
+def angles(sides: Figures) -> str:
+    """How far the network is from the solver, and how often from anything good."""
+    rows = []
+    for side, report in sides.items():
+        overall = report["overall"]
+        median, most = overall["angles_deg"]
+        worse = overall["worse_than_radial_pct"]
+        rows.append([SIDES[side], f"{median:.0f}°", f"{most:.0f}°", f"{worse:.1f} %"])
+    return table(["shapes", "median", "90 %", "worse than the radial projection"], rows)
+
+
+def whole(sides: Figures) -> str:
+    """The finished maps, network against solver."""
+    rows = []
+    for side, report in sides.items():
+        if (w := report["overall"]["whole"]) is None:
+            continue
+        cpu = "–" if w["cpu_ratio"] is None else f"{w['cpu_ratio']:.2f}"
+        rows.append(
+            [
+                f"{SIDES[side]} ({w['n_shapes']})",
+                f"{w['n_vertices']:,.0f}",
+                f"{w['energy_ratio']:.3f}",
+                f"{w['relaxations_ratio']:.2f}",
+                cpu,
+                f"{w['gave_up_pct']:.1f} %",
+            ]
+        )
+    header = ["shapes", "vertices", "distortion", "relaxations", "CPU time", "given up"]
+    return table(header, rows)
+
+
+def categories(sides: Figures) -> str:
+    """The network's proposals in each category that it was not trained on."""
+    rows = []
+    for side in ("held_out", "other"):
+        for category, summary in sides.get(side, {"categories": {}})["categories"].items():
+            p = summary["network"]
+            rows.append(
+                [
+                    f"{category}, {SIDES[side]}",
+                    str(summary["n_shapes"]),
+                    f"{summary['radial']['energy_ratio']:.2f}",
+                    f"{p['energy_ratio']:.2f}",
+                    f"{p['folds_pct']:.1f} %",
+                    f"{p['f1_pct'][1]:.0f}",
+                ]
+            )
+    header = ["category", "shapes", "radial, of the solver's", "network, of the solver's"]
+    return table([*header, "folded", "F1 at 1 %"], rows)
+
+
+def main(report: Path, page: Path) -> None:
+    """Writes every table of a report into the page."""
+    sides = json.loads(report.read_text())["sides"]
+    text = page.read_text()
+    for make in (proposals, angles, whole, categories):
+        pattern = re.compile(rf"(<!-- measured: {make.__name__} -->\n).*?(<!-- end -->)", re.DOTALL)
+        made = make(sides)
+        text = pattern.sub(lambda found, made=made: f"{found[1]}\n{made}\n\n{found[2]}", text)
+    page.write_text(text)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), Path(sys.argv[2]))
