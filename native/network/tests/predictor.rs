@@ -51,6 +51,36 @@ fn whatever_it_proposes_ends_in_a_valid_map() {
     }
 }
 
+/// Distortion and folds in percent of what the committed weights propose for the suite's shapes.
+const RECORDED: &[(&str, f64, f64)] = &[
+    ("sphere", 1.628, 0.0),
+    ("cuboid", 1.684, 0.0),
+    ("capsule", 2.001, 0.0),
+    ("blob", 1.652, 0.0),
+    ("limbs", 2.554, 5.61),
+];
+
+#[test]
+fn the_weights_of_the_committed_run_do_what_they_did() {
+    let bytes = include_bytes!("../../training/runs/2026-11-24/weights.orbflow");
+    let trained = predictor(&Weights::from_bytes(bytes).expect("they are whole"));
+    let shapes = hierarchies();
+    assert_eq!(shapes.len(), RECORDED.len());
+    for ((name, hierarchy), &(wanted, energy, folds_pct)) in shapes.iter().zip(RECORDED) {
+        assert_eq!(*name, wanted);
+        let found = check(hierarchy, &trained).proposal;
+        // Sums of single precision differ between machines.
+        assert!(
+            (found.energy / energy - 1.0).abs() < 0.02,
+            "{name} {found:?}"
+        );
+        assert!(
+            (found.folds_pct - folds_pct).abs() < 1.0,
+            "{name} {found:?}"
+        );
+    }
+}
+
 #[test]
 fn the_finest_level_is_proposed_and_no_more() {
     let proposal = propose(common::limbs(4, 9));
