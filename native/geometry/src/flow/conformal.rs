@@ -18,7 +18,7 @@ use super::complex::{Complex, Dressing, Turn, flip_moves, move_values};
 use super::field::{Charts, OrientationField};
 use crate::mesh::{FaceId, HalfedgeId, HalfedgeMap, TriangleMesh, VertexMap};
 use crate::progress::{Cancelled, Progress};
-use crate::sparse::{NotPositiveDefinite, SymmetricMatrix};
+use crate::sparse::{Cholesky, NotPositiveDefinite, SymmetricMatrix};
 
 /// How far an angle sum may miss its goal, in radians: near the rounding of a sum of some arcs.
 const EXACT: f64 = 1e-11;
@@ -30,6 +30,10 @@ const MOST_STEPS: usize = 80;
 const LARGEST_STEP: f64 = 3.0;
 /// Makes the Laplacian definite; a smaller shift is lost in its rounding.
 const SHIFT: f64 = 1e-8;
+/// Below this miss, in radians, Newton's steps may share a factor.
+const NEAR: f64 = 0.05;
+/// As long as each leaves no more than this share of the miss.
+const GAIN: f64 = 0.1;
 /// The part of its longest side by which a triangle must clear the triangle inequality.
 const LEAST_EXCESS: f64 = 1e-7;
 /// How far below 0 a sum of cotangents must lie to be worth a flip.
@@ -102,15 +106,25 @@ impl Metric {
     /// Newton steps until every angle sum is right.
     fn level(&mut self, progress: &Progress) -> Result<(), FlattenError> {
         let mut largest = f64::INFINITY;
+        let mut factor: Option<Cholesky> = None;
         for n_steps in 0..MOST_STEPS {
             progress.at(n_steps as f64 / MOST_STEPS as f64)?;
             self.delaunay();
             let misses = self.misses();
+            let before = largest;
             largest = misses.iter().fold(0.0, |most, miss| miss.abs().max(most));
             if largest < EXACT {
                 return Ok(());
             }
-            let step = self.newton_step(&misses)?;
+            // Near the goal the last factor is as good as a new one, while it gains a digit a step.
+            let is_good = largest < NEAR && largest < GAIN * before;
+            let last = factor.take().filter(|_| is_good);
+            let factor = factor.insert(match last {
+                Some(last) => last,
+                None => self.laplacian().factorize()?,
+            });
+            let mut step = misses.clone();
+            factor.solve(step.as_mut_slice());
             progress.check()?;
             if !self.go(&step, &misses) {
                 return done_if_close(largest, n_steps);
@@ -129,7 +143,8 @@ impl Metric {
         sums
     }
 
-    fn newton_step(&self, misses: &VertexMap<f64>) -> Result<VertexMap<f64>, NotPositiveDefinite> {
+    /// How angle sums change with log scales.
+    fn laplacian(&self) -> SymmetricMatrix {
         let complex = &self.complex;
         let mut matrix = SymmetricMatrix::new(complex.n_vertices());
         for vertex in 0..complex.n_vertices() {
@@ -142,9 +157,7 @@ impl Metric {
                 matrix.add_square(&[(ends[0], 1.0), (ends[1], -1.0)], weight);
             }
         }
-        let mut step = misses.clone();
-        matrix.factorize()?.solve(step.as_mut_slice());
-        Ok(step)
+        matrix
     }
 
     /// Goes as far along a step as lowers the misses; false where nothing does.

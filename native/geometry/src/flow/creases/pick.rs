@@ -9,6 +9,9 @@ const SHORTEST: f64 = 3.0;
 /// A line does not end nearer than this many edges to a singularity or the end of another line:
 /// in the result they lie at least one edge apart.
 const ROOM: f64 = 0.8;
+/// Lines are cut into pieces of about so many edges. In longer ones the straight segment between
+/// the ends strays from the line or bends round a singularity; shorter ones leave quads no choice.
+const PIECE: f64 = 15.0;
 
 /// The least share of all sharp edges that lines of quads must cover.
 const CLEAR: f64 = 0.7;
@@ -24,7 +27,7 @@ pub struct Line {
 
 /// The lines of sharp edges that are long enough for quads of edge length `h`, longest first.
 ///
-/// They end at corners and singularities; where an end is too near to another or to a singularity
+/// They end at corners and singularities, and long ones come in pieces; where an end is too near to another or to a singularity
 /// that is not on the line, the line ends before. O(n + lines · singularities).
 pub fn lines(
     mesh: &TriangleMesh,
@@ -52,10 +55,12 @@ pub fn lines(
         if length(mesh, &halfedges) < SHORTEST * h {
             continue;
         }
-        let [first, last] = [halfedges[0], halfedges[halfedges.len() - 1]];
-        let ends = [mesh.origin(first), mesh.target(last)];
-        kept.extend(ends);
-        lines.push(Line { halfedges, ends });
+        for halfedges in pieces(mesh, halfedges, h) {
+            let [first, last] = [halfedges[0], halfedges[halfedges.len() - 1]];
+            let ends = [mesh.origin(first), mesh.target(last)];
+            kept.extend(ends);
+            lines.push(Line { halfedges, ends });
+        }
     }
     lines
 }
@@ -82,6 +87,28 @@ fn length(mesh: &TriangleMesh, line: &[HalfedgeId]) -> f64 {
         mesh.position(a).distance(mesh.position(b))
     };
     line.iter().map(of).sum()
+}
+
+/// A long line cut into pieces of about equal length; a closed one stays whole, so that its ring
+/// can be told from others.
+fn pieces(mesh: &TriangleMesh, line: Vec<HalfedgeId>, h: f64) -> Vec<Vec<HalfedgeId>> {
+    let is_closed = mesh.origin(line[0]) == mesh.target(line[line.len() - 1]);
+    let whole = length(mesh, &line);
+    let n = (whole / (PIECE * h)).round();
+    if is_closed || n < 2.0 {
+        return vec![line];
+    }
+    let mut pieces = vec![Vec::new()];
+    let mut done = 0.0;
+    for halfedge in line {
+        if done >= pieces.len() as f64 * whole / n {
+            pieces.push(Vec::new());
+        }
+        let last = pieces.len() - 1;
+        pieces[last].push(halfedge);
+        done += length(mesh, &[halfedge]);
+    }
+    pieces
 }
 
 /// A line without what lies before its first and after its last free vertex; a closed one is

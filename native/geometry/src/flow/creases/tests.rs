@@ -26,9 +26,18 @@ fn a_box_has_twelve_lines_between_its_corners() {
     for v in mesh.vertex_ids() {
         assert_eq!(field.indices[v], i32::from(corners[v]));
     }
-    let lines = lines(&mesh, &field, &sharp, h);
-    assert_eq!(lines.len(), 12);
-    assert!(lines.iter().all(|line| line.halfedges.len() == 10));
+    let whole = lines(&mesh, &field, &sharp, h);
+    assert_eq!(whole.len(), 12);
+    assert!(whole.iter().all(|line| line.halfedges.len() == 10));
+    // For quads a quarter as long, the longer edges come in pieces.
+    let cut = lines(&mesh, &field, &sharp, h / 4.0);
+    assert!(cut.len() > 12);
+    let n_edges: usize = cut.iter().map(|line| line.halfedges.len()).sum();
+    assert_eq!(n_edges, 120);
+    for line in &cut {
+        assert_eq!(mesh.origin(line.halfedges[0]), line.ends[0]);
+        assert!(line.halfedges.len() < 10);
+    }
 }
 
 #[test]

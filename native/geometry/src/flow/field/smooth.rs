@@ -7,7 +7,7 @@ use super::charts::Charts;
 use super::shape::{Pull, fourth_power};
 use crate::mesh::{FaceId, FaceMap, HalfedgeId, Id, TriangleMesh};
 use crate::progress::Progress;
-use crate::sparse::{HermitianMatrix, Order};
+use crate::sparse::{HermitianCholesky, HermitianMatrix};
 
 /// How often each diffusion time is applied, with lengths restored after each.
 const N_STEPS: usize = 3;
@@ -32,9 +32,19 @@ pub fn smooth(
     let mut crosses = FaceMap::filled(z.len(), DVec2::X);
     restore_lengths(&mut crosses, &z);
     let mut time = mesh.n_faces() as f64 / 400.0;
+    let mut last: Option<(f64, HermitianCholesky)> = None;
     for round in 0..4 {
         progress.at(0.2 + 0.2 * f64::from(round))?;
-        diffuse(&graph, &order, (pulls, time), &mut crosses)?;
+        // On coarse meshes the shortest times are one.
+        let same = last.take().filter(|(t, _)| t.total_cmp(&time).is_eq());
+        let factor = if let Some((_, factor)) = same {
+            factor
+        } else {
+            let system = graph.system(|face| 1.0 + time * pulls[face].weight, time);
+            system.factorize(&order)?
+        };
+        diffuse(&factor, (pulls, time), &mut crosses);
+        last = Some((time, factor));
         time = (time / 4.0).max(2.0);
     }
     Ok(crosses)
@@ -42,13 +52,10 @@ pub fn smooth(
 
 /// Solves (1 + τλ + τL) z' = z + τλq and restores lengths, a few times.
 fn diffuse(
-    graph: &Graph,
-    order: &Order,
+    factor: &HermitianCholesky,
     (pulls, time): (&FaceMap<Pull>, f64),
     crosses: &mut FaceMap<DVec2>,
-) -> Result<(), FieldError> {
-    let system = graph.system(|face| 1.0 + time * pulls[face].weight, time);
-    let factor = system.factorize(order)?;
+) {
     for _ in 0..N_STEPS {
         let mut z: FaceMap<DVec2> = crosses
             .iter()
@@ -58,7 +65,6 @@ fn diffuse(
         factor.solve(z.as_mut_slice());
         restore_lengths(crosses, &z);
     }
-    Ok(())
 }
 
 /// Takes over directions; where a vector vanished the cross stays what it was.
