@@ -2,14 +2,17 @@
 
     python tests/pictures/make.py [--only NAME...]
 
-Runs the built `orbflow` on meshes of `shared/data/dev` beside the checkout and renders what comes
-out with Blender's bpy wheel (on a machine without screen this needs the library libegl1).
+Runs the built `orbflow`, and for the gallery the peers, on meshes of `shared/data/dev` beside the
+checkout and renders what comes out with Blender's bpy wheel (on a machine without screen this needs
+the library libegl1).
 """
 
 import argparse
 import json
 import subprocess
+import sys
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from stage import Exhibit, picture
@@ -51,6 +54,15 @@ class Studio:
         self._run("embed", mesh, "--sphere", sphere)
         return sphere
 
+    def peer(self, name: str, peer: str, n_faces: int) -> Path | None:
+        """The mesh that a peer makes by `tools/peers`; none when it makes none."""
+        script = self.meshes.parents[1] / "tools" / "peers" / "run_peers.py"
+        command = [sys.executable, script, self.input(name), "--targets", n_faces]
+        command += ["--peers", peer, "--out", self.folder, "--blender", sys.executable]
+        subprocess.run([str(part) for part in command], check=True, capture_output=True)
+        mesh = self.folder / f"{name}.{peer}.{n_faces}.obj"
+        return mesh if mesh.exists() else None
+
     def _run(self, verb: str, *arguments: str | Path | int) -> dict:
         report = self.folder / "report.json"
         self._program(verb, *arguments, "--report", report)
@@ -79,7 +91,7 @@ def method(studio: Studio) -> list[list[Exhibit]]:
     coarse = studio.decimate("spot", 3000)
     embedded = studio.embed(coarse)
     adaptive, adaptive_sphere, _ = studio.remesh("spot", 3000, "--kind", "triangles")
-    quads, quad_sphere, _ = studio.remesh("spot", 2000, "--kind", "quads")
+    quads, flow_sphere, _ = studio.remesh("spot", 2000, "--kind", "quads")
     return [
         [
             Exhibit(coarse, "decimated", embedded),
@@ -90,28 +102,38 @@ def method(studio: Studio) -> list[list[Exhibit]]:
             Exhibit(adaptive, "deformed", adaptive_sphere),
         ],
         [
-            Exhibit(quad_sphere, "quad sphere", quad_sphere, is_y_up=False),
-            Exhibit(quads, "deformed", quad_sphere),
+            Exhibit(flow_sphere, "quads that flow", flow_sphere, is_y_up=False),
+            Exhibit(quads, "deformed", flow_sphere),
         ],
     ]
 
 
-def gallery(studio: Studio) -> list[list[Exhibit]]:
-    """Several models, triangles above quads."""
-    names = ("cat", "koala", "fish", "wingnut", "cad_shaft")
+def gallery(studio: Studio, names: tuple[str, ...]) -> list[list[Exhibit]]:
+    """Models as they came, as quads of ours and as quads of two peers, irregular vertices marked."""
     rows = []
-    for kind, n_faces in (("triangles", 4000), ("quads", 2000)):
-        made = [studio.remesh(name, n_faces, "--kind", kind) for name in names]
-        rows.append(
-            [Exhibit(mesh, f"{report['output']['n_faces']:,} {kind}") for mesh, _, report in made]
-        )
+    for name in names:
+        ours, _, report = studio.remesh(name, N_QUADS)
+        row = [Exhibit(studio.input(name), f"{name}, {_n_faces(studio.input(name)):,}", edges=FINE)]
+        row.append(Exhibit(ours, f"Orbflow, {report['output']['n_faces']:,}", has_marks=True))
+        for peer, title in PEERS.items():
+            mesh = studio.peer(name, peer, N_QUADS)
+            if mesh is not None:
+                row.append(Exhibit(mesh, f"{title}, {_n_faces(mesh):,}", has_marks=True))
+        rows.append(row)
     return rows
 
 
+N_QUADS = 2000
+PEERS = {"instant_meshes": "Instant Meshes", "quadriflow": "QuadriFlow"}
+GALLERIES = {
+    "gallery_animals": ("spot", "cat", "koala", "fish", "penguin"),
+    "gallery_thin": ("scorpion", "goathead", "nefertiti", "boat", "plane"),
+    "gallery_hard": ("hammer", "sword", "wingnut", "cad_shaft", "cad_cube_bump"),
+}
 PICTURES: dict[str, Callable[[Studio], list[list[Exhibit]]]] = {
     "overview": overview,
     "method": method,
-    "gallery": gallery,
+    **{name: partial(gallery, names=names) for name, names in GALLERIES.items()},
 }
 
 

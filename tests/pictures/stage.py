@@ -9,6 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 CELL_PX = 480
+# Rows of a tall picture are drawn smaller: it is scrolled, not looked at as a whole.
+SMALL_CELL_PX, TALL = 330, 4
+MARK = 0.0075
 LABEL_SIZE = 0.075
 
 
@@ -17,7 +20,8 @@ class Exhibit:
     """A mesh file, what is written under it, and how it stands.
 
     `colours` is another mesh file with the same vertices whose positions give the colours: so the
-    same place has the same colour on the surface and on the sphere.
+    same place has the same colour on the surface and on the sphere. With marks, irregular vertices
+    of quads are shown: blue where one edge is missing, red where there is one too many, else black.
     """
 
     path: Path
@@ -27,6 +31,7 @@ class Exhibit:
     turn_deg: float = 35.0
     tilt_deg: float = 18.0
     is_y_up: bool = True
+    has_marks: bool = False
 
 
 def picture(rows: Sequence[Sequence[Exhibit]], out: Path) -> None:
@@ -53,6 +58,8 @@ def _place(exhibit: Exhibit, centre: NDArray[np.float64]) -> None:
     attribute = mesh.color_attributes.new("colour", "FLOAT_COLOR", "POINT")
     attribute.data.foreach_set("color", colours.astype(np.float32).ravel())
     mesh.update()
+    if exhibit.has_marks:
+        _marks(mesh)
     _wires(solid, exhibit.edges)
     _label(exhibit.label, centre)
 
@@ -93,6 +100,28 @@ def _wires(solid: bpy.types.Object, thickness: float) -> None:
     bpy.context.scene.collection.objects.link(wire)
 
 
+def _marks(mesh: bpy.types.Mesh) -> None:
+    """An octahedron round every vertex that does not have four edges."""
+    ends = np.empty(2 * len(mesh.edges), np.int32)
+    mesh.edges.foreach_get("vertices", ends)
+    valences = np.bincount(ends, minlength=len(mesh.vertices))
+    where = np.flatnonzero(valences != 4)
+    corners = np.concatenate([np.eye(3), -np.eye(3)]) * MARK
+    faces = [(i, j, k) for i in (0, 3) for j in (1, 4) for k in (2, 5)]
+    points = (_positions(mesh)[where][:, None] + corners).reshape(-1, 3)
+    all_faces = (6 * np.arange(len(where))[:, None, None] + np.array(faces)).reshape(-1, 3)
+    marks = bpy.data.meshes.new("marks")
+    marks.from_pydata(points, [], all_faces)
+    colours = np.array([_mark_colour(n) for n in valences[where]], np.float32)
+    attribute = marks.color_attributes.new("colour", "FLOAT_COLOR", "POINT")
+    attribute.data.foreach_set("color", np.repeat(colours, len(corners), 0).ravel())
+    bpy.context.scene.collection.objects.link(bpy.data.objects.new("marks", marks))
+
+
+def _mark_colour(valence: int) -> tuple[float, float, float, float]:
+    return {3: (0.1, 0.35, 1.0, 1.0), 5: (1.0, 0.1, 0.1, 1.0)}.get(valence, (0.0, 0.0, 0.0, 1.0))
+
+
 def _label(text: str, centre: NDArray[np.float64]) -> None:
     curve = bpy.data.curves.new("label", "FONT")
     curve.body, curve.size, curve.align_x, curve.align_y = text, LABEL_SIZE, "CENTER", "BOTTOM"
@@ -114,7 +143,8 @@ def _camera(n_columns: int, n_rows: int) -> None:
 def _render(n_columns: int, n_rows: int, out: Path) -> None:
     scene = bpy.context.scene
     scene.render.engine = "BLENDER_WORKBENCH"
-    scene.render.resolution_x, scene.render.resolution_y = n_columns * CELL_PX, n_rows * CELL_PX
+    cell = SMALL_CELL_PX if n_rows > TALL else CELL_PX
+    scene.render.resolution_x, scene.render.resolution_y = n_columns * cell, n_rows * cell
     scene.render.film_transparent = False
     scene.render.filepath = str(out)
     scene.render.image_settings.color_mode = "RGB"
