@@ -46,7 +46,9 @@ def read(mesh: bpy.types.Mesh, marks: Iterable[str] = ()) -> MeshArrays:
     corners = np.empty(len(mesh.loops), np.int32)
     if len(mesh.loops):
         mesh.attributes[".corner_vert"].data.foreach_get("value", corners)
-    return MeshArrays(positions.reshape(-1, 3), loop_start, corners, _materials(mesh), _marked(mesh, marks))
+    return MeshArrays(
+        positions.reshape(-1, 3), loop_start, corners, _materials(mesh), _marked(mesh, marks)
+    )
 
 
 def _materials(mesh: bpy.types.Mesh) -> Int | None:

@@ -30,6 +30,9 @@ def bars(results: Results) -> list[Bar]:
         ("quads", _quads),
         ("flow", _flow),
         ("flow_many", _flow_many),
+        ("flow_even", _flow_even),
+        ("flow_bodies", _flow_bodies),
+        ("flow_artists", _flow_artists),
         ("large", _large),
         ("identity", _identity),
         ("sizes", _sizes),
@@ -126,7 +129,6 @@ def _flow(rows: list[Row]) -> list[Bar]:
         ("count error, median", "count_error_pct", "≤", 1, "{:.2f} %"),
         ("mean distance, median", "chamfer_pct", "≤", 0.045, "{:.3f} %"),
         ("Hausdorff distance, median", "hausdorff_pct", "≤", 0.9, "{:.2f} %"),
-        ("edge length CV, median", "edge_cv", "≤", 0.16, "{:.3f}"),
         ("scaled Jacobian, 1 % quantile, median", "jacobian_p01", "≥", 0.60, "{:.2f}"),
         ("scaled Jacobian, mean, median", "jacobian_mean", "≥", 0.955, "{:.3f}"),
         ("irregular vertices, median", "irregular_pct", "≤", 3.2, "{:.1f} %"),
@@ -159,6 +161,48 @@ def _flow(rows: list[Row]) -> list[Bar]:
 def _flow_many(rows: list[Row]) -> list[Bar]:
     what = "`--primitive flow --faces 8000`, {}"
     return [_sound(rows, what, 1), *_against(rows, what, "quadriflow", 0.5)]
+
+
+def _flow_even(rows: list[Row]) -> list[Bar]:
+    what = "`--primitive flow --faces 2000 --adaptivity 0`, {}"
+    return [_figure(rows, what, ("edge length CV, median", "edge_cv", "≤", 0.16, "{:.3f}"))]
+
+
+def _flow_bodies(rows: list[Row]) -> list[Bar]:
+    what = "five bodies, 2,000 quads, {}"
+    worst = [
+        ("largest Hausdorff distance", max, "hausdorff_pct", "≤", 1.0, "{:.2f} %"),
+        ("largest mean distance when posed", max, "posed_chamfer_pct", "≤", 0.03, "{:.3f} %"),
+        ("least scaled Jacobian", min, "jacobian_min", ">", 0.0, "{:.2f}"),
+        ("fewest edges on closed loops", min, "loop_edges_pct", "≥", 35, "{:.0f} %"),
+        ("most quads in spirals", max, "spiral_pct", "≤", 5, "{:.1f} %"),
+    ]
+    found = [_sound(rows, what, 1)]
+    for words, most, key, sign, bar, form in worst:
+        value = most(row[key] for row in rows if row["ok"])
+        met = value <= bar if sign == "≤" else value > bar if sign == ">" else value >= bar
+        found.append(Bar(what.format(words), f"{sign} {bar}", form.format(value), met))
+    return found
+
+
+def _flow_artists(rows: list[Row]) -> list[Bar]:
+    what = "`quaternius`, as many quads as the artist's model has or would have, {}"
+    upright = [{"ok": row["ok"] and row["n_inverted"] == 0} for row in rows]
+    sound, all_sound = _count(rows, "is_sound"), _all(rows, "is_sound")
+    found = [
+        Bar(what.format("closed and all quads"), "every one", sound, all_sound),
+        Bar(what.format("flow used, not a fallback"), "", _count(rows, "is_used"), None),
+        Bar(what.format("no inverted quad"), "", _count(upright), None),
+    ]
+    for key, words, form in (
+        ("loop_edges_pct", "edges on closed loops", "{:.0f} %, the artists' {:.0f} %"),
+        ("alignment_deg", "deviation from principal directions", "{:.1f}°, the artists' {:.1f}°"),
+        ("spiral_pct", "quads in spirals", "{:.1f} %, the artists' {:.1f} %"),
+    ):
+        n = sum(row.get(key) is not None for row in rows)
+        both = form.format(median(rows, key), median(rows, f"artists_{key}"))
+        found.append(Bar(what.format(f"{words}, median of {n} of quads"), "", both, None))
+    return found
 
 
 def _figure(rows: list[Row], what: str, figure: tuple[str, str, str, float, str]) -> Bar:

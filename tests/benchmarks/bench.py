@@ -21,7 +21,7 @@ Row = dict[str, Any]
 
 @dataclass(frozen=True)
 class Bench:
-    """Where things are. `shared` holds data/dev, data/quaternius, tools/quality and tools/peers."""
+    """Where things are. `shared` holds the folders `data` and `tools`."""
 
     orbflow: Path
     shared: Path
@@ -38,6 +38,11 @@ class Bench:
         """Parts of low-poly models."""
         return self.shared / "data" / "quaternius"
 
+    @property
+    def poses(self) -> Path:
+        """Bodies, at rest and bent."""
+        return self.shared / "data" / "poses"
+
     @cached_property
     def quality(self) -> Any:  # noqa: ANN401 (a package outside the repository, without types)
         """The package that defines the figures."""
@@ -52,9 +57,9 @@ class Bench:
             done = run(command)
             return done, json.loads(report.read_text()) if done.ok else {}
 
-    def figures(self, source: Path, output: Path, n_quads: int) -> Row:
+    def figures(self, source: Path, output: Path, n_quads: int, poses: Sequence[Path] = ()) -> Row:
         """Every figure of `tools/quality` of one output."""
-        reference = self.quality.Reference.read(source)
+        reference = self.quality.Reference.read(source, poses)
         return self.quality.measure(reference, self.quality.read_mesh(output), n_quads)
 
     def triangles_of(self, path: Path) -> tuple[Points, Triangles]:

@@ -3,9 +3,9 @@
     python tests/benchmarks/measure.py [--only PART...] [--write docs/benchmarks.md]
 
 Needs the built program, the folder `shared` beside the checkout (data/dev, data/quaternius,
-tools/quality, tools/peers) and the packages of the dependency group `bench`; QuadriFlow runs where
-a Python with the bpy wheel is given. Results are kept in a file part by part, so that one part can
-be measured again alone.
+data/poses, tools/quality, tools/peers) and the packages of the dependency group `bench`; QuadriFlow
+runs where a Python with the bpy wheel is given. Results are kept in a file part by part, so that
+one part can be measured again alone.
 """
 
 import argparse
@@ -18,6 +18,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import embedding
+import flowing
 import remeshing
 from bars import Results
 from bench import Bench, Row
@@ -56,8 +57,11 @@ PARTS: dict[str, Callable[[Bench], list[Row]]] = {
     "threads": embedding.threads,
     "triangles": remeshing.triangles,
     "quads": remeshing.quads,
-    "flow": remeshing.flow,
-    "flow_many": remeshing.flow_many,
+    "flow": flowing.flow,
+    "flow_many": flowing.flow_many,
+    "flow_even": flowing.flow_even,
+    "flow_bodies": flowing.flow_bodies,
+    "flow_artists": flowing.flow_artists,
     "large": remeshing.large,
     "identity": remeshing.identity,
     "sizes": sizes,

@@ -1,11 +1,12 @@
 """Measures whole runs: each primitive, a large input, the peers beside them, the same bytes."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 from bench import Bench, Row, cpu_of, failure
 from embedding import made
-from inputs import Listed, resized, single_balls, write_obj
+from inputs import resized, single_balls, write_obj
 from runs import Run
 
 N_TRIANGLES = 6000
@@ -36,6 +37,7 @@ FIGURES = (
     "loop_edges_pct",
     "spiral_pct",
     "feature_f1_pct",
+    "posed_chamfer_pct",
 )
 PEER_FIGURES = ("chamfer_pct", "faces", "same_topology")
 
@@ -44,7 +46,7 @@ def triangles(bench: Bench) -> list[Row]:
     """6,000 adaptive triangles on every mesh, isotropic remeshing beside it."""
     rows = []
     for mesh in single_balls(bench.dev):
-        row = _remeshed(bench, mesh, "adaptive", N_TRIANGLES)
+        row = remeshed(bench, mesh.path, ("adaptive", N_TRIANGLES))
         peer = bench.peer(mesh.path, "isotropic", N_TRIANGLES // 2)
         if peer["status"] == "ok" and row["ok"]:
             found = bench.figures(mesh.path, peer["output"], N_TRIANGLES // 2)
@@ -53,29 +55,20 @@ def triangles(bench: Bench) -> list[Row]:
             row["isotropic_cpu_s"] = peer["cpu_s"]
             row["chamfer_ratio"] = row["chamfer_pct"] / found["chamfer_pct"]
         rows.append(row)
-        _say(row, "chamfer_pct", "chamfer_ratio", "f1_at_0.5_pct", "edge_cv", "cpu_s")
+        say(row, "chamfer_pct", "chamfer_ratio", "f1_at_0.5_pct", "edge_cv", "cpu_s")
     return rows
 
 
 def quads(bench: Bench) -> list[Row]:
     """2,000 quads of the quad sphere on every mesh, the peers in turn with it."""
-    return _beside_peers(bench, "quad-sphere", N_QUADS)
+    return beside_peers(bench, "quad-sphere", N_QUADS)
 
 
-def flow(bench: Bench) -> list[Row]:
-    """2,000 quads that flow on every mesh, the peers in turn with it."""
-    return _beside_peers(bench, "flow", N_QUADS)
-
-
-def flow_many(bench: Bench) -> list[Row]:
-    """8,000 quads that flow on every mesh, the peers in turn with it."""
-    return _beside_peers(bench, "flow", N_MANY_QUADS)
-
-
-def _beside_peers(bench: Bench, primitive: str, n_quads: int) -> list[Row]:
+def beside_peers(bench: Bench, primitive: str, n_quads: int) -> list[Row]:
+    """So many quads of a primitive on every mesh, the peers in turn with it."""
     rows = []
     for mesh in single_balls(bench.dev):
-        row = _remeshed(bench, mesh, primitive, n_quads)
+        row = remeshed(bench, mesh.path, (primitive, n_quads))
         for peer in ("instant_meshes", *(("quadriflow",) if bench.blender else ())):
             found = bench.peer(mesh.path, peer, n_quads)
             row[f"{peer}_s"] = found.get("cpu_s")
@@ -84,9 +77,7 @@ def _beside_peers(bench: Bench, primitive: str, n_quads: int) -> list[Row]:
                 figures = bench.figures(mesh.path, found["output"], n_quads)
                 row |= {f"{peer}_{name}": figures[name] for name in PEER_FIGURES}
         rows.append(row)
-        _say(
-            row, "faces", "chamfer_pct", "f1_at_1_pct", "run_s", "instant_meshes_s", "quadriflow_s"
-        )
+        say(row, "faces", "chamfer_pct", "f1_at_1_pct", "run_s", "instant_meshes_s", "quadriflow_s")
     return rows
 
 
@@ -96,18 +87,27 @@ def in_peer_range(rows: list[Row]) -> list[Row]:
     return [row for row in rows if low <= row.get("input_triangles", 0) <= high]
 
 
-def _remeshed(bench: Bench, mesh: Listed, primitive: str, n_faces: int) -> Row:
-    output = bench.out / f"{primitive}_{n_faces}" / f"{mesh.name}.obj"
+def remeshed(
+    bench: Bench, path: Path, asked: tuple[str | float, ...], poses: Sequence[Path] = ()
+) -> Row:
+    """One run and its figures; `asked` is the primitive, the number of faces and other arguments.
+
+    With poses, other positions of the input's vertices, also those of the result bent like it.
+    """
+    primitive, n_faces, *others = asked
+    assert isinstance(n_faces, int)
+    name = path.stem
+    output = bench.out / "_".join(str(each).strip("-") for each in asked) / f"{name}.obj"
     output.parent.mkdir(parents=True, exist_ok=True)
-    arguments = ("--faces", n_faces, "--primitive", primitive, "--threads", 1)
-    done, report = bench.program("remesh", mesh.path, output, *arguments)
-    command = f"orbflow remesh {mesh.path} out.obj {' '.join(map(str, arguments))}"
+    arguments = ("--faces", n_faces, "--primitive", primitive, "--threads", 1, *others)
+    done, report = bench.program("remesh", path, output, *arguments)
+    command = f"orbflow remesh {path} out.obj {' '.join(map(str, arguments))}"
     if not done.ok:
-        return failure(mesh.name, done, command)
+        return failure(name, done, command)
     n_quads = n_faces // 2 if primitive == "adaptive" else n_faces
-    found = bench.figures(mesh.path, output, n_quads)
+    found = bench.figures(path, output, n_quads, poses)
     return {
-        "mesh": mesh.name,
+        "mesh": name,
         "ok": True,
         "command": command,
         "n_asked": n_faces,
@@ -115,14 +115,13 @@ def _remeshed(bench: Bench, mesh: Listed, primitive: str, n_faces: int) -> Row:
         **{name: found.get(name) for name in FIGURES},
         "count_error_pct": 100 * abs(found["faces"] / n_faces - 1),
         "n_folds": report["embedding"]["n_folds"],
-        "is_used": all(
-            (part.get("flow") or {}).get("status") == "used" for part in report["parts"]
-        ),
+        "is_used": flows(report),
     }
 
 
-def _flows(part: Row) -> bool:
-    return (part.get("flow") or {}).get("status") == "used"
+def flows(report: Row) -> bool:
+    """Whether the quads of every part flow."""
+    return all((part.get("flow") or {}).get("status") == "used" for part in report["parts"])
 
 
 def _cost(done: Run, report: Row) -> Row:
@@ -154,7 +153,7 @@ def large(bench: Bench) -> list[Row]:
                 {"mesh": name, "kind": kind, "ok": True, "faces": found.n_faces}
                 | _cost(done, report)
             )
-            _say(rows[-1], "kind", "faces", "cpu_s", "peak_mb")
+            say(rows[-1], "kind", "faces", "cpu_s", "peak_mb")
     return rows
 
 
@@ -195,11 +194,12 @@ def _compared(bench: Bench, path: Path, kind: str, n_faces: int) -> Row:
         "two_threads": written[0] == written[2],
         "n_bytes": sum(map(len, written[0])),
     }
-    _say(row, "kind", "twice", "two_threads")
+    say(row, "kind", "twice", "two_threads")
     return row
 
 
-def _say(row: Row, *names: str) -> None:
+def say(row: Row, *names: str) -> None:
+    """Prints some figures of a row."""
     shown = [f"{name} {_short(row[name])}" for name in names if row.get(name) is not None]
     print(f"  {row['mesh']}: {', '.join(shown)}", flush=True)
 

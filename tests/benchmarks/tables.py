@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
 from bars import Results, bars
@@ -51,6 +52,19 @@ FLOW = (
     ("feature_f1_pct", "feature F1 %", ".0f"),
     ("run_s", "CPU s", ".2f"),
     ("quadriflow_s", "QuadriFlow's", ".2f"),
+)
+BODIES = (
+    ("faces", "quads", "d"),
+    ("chamfer_pct", "mean distance %", ".3f"),
+    ("posed_chamfer_pct", "posed", ".3f"),
+    ("hausdorff_pct", "Hausdorff %", ".2f"),
+    ("edge_cv", "edge CV", ".3f"),
+    ("jacobian_min", "Jacobian min", ".2f"),
+    ("irregular_pct", "irregular %", ".1f"),
+    ("alignment_deg", "alignment °", ".1f"),
+    ("loop_edges_pct", "loop edges %", ".0f"),
+    ("spiral_pct", "spiral %", ".1f"),
+    ("run_s", "CPU s", ".2f"),
 )
 WHOLE = (
     ("input_triangles", "input triangles", "d"),
@@ -131,22 +145,21 @@ def summary(results: Results) -> str:
 def tables(results: Results) -> dict[str, str]:
     """The Markdown of every part that was measured, by the name of its marker."""
     made = {"summary": summary(results)}
-    if rows := results.get("cost"):
-        made["cost"] = table(rows, COST, with_median=False)
-    if rows := results.get("threads"):
-        made["threads"] = table(rows, THREADS)
-    if rows := results.get("triangles"):
-        made["triangles"] = table(rows, TRIANGLES)
-    if rows := results.get("quads"):
-        made["quads"] = table(rows, QUADS)
-        made["whole"] = table(rows, WHOLE)
-        made["steps"] = steps_table(rows)
-    for name in ("flow", "flow_many"):
-        if rows := results.get(name):
-            made[name] = table(rows, FLOW)
-            made[f"{name}_steps"] = steps_table(rows)
-    if rows := results.get("large"):
-        made["large"] = table(rows, LARGE, with_median=False)
+    for marker, part, make in (
+        ("cost", "cost", partial(table, columns=COST, with_median=False)),
+        ("threads", "threads", partial(table, columns=THREADS)),
+        ("triangles", "triangles", partial(table, columns=TRIANGLES)),
+        ("quads", "quads", partial(table, columns=QUADS)),
+        ("whole", "quads", partial(table, columns=WHOLE)),
+        ("steps", "quads", steps_table),
+        ("flow", "flow", partial(table, columns=FLOW)),
+        ("flow_steps", "flow", steps_table),
+        ("flow_many", "flow_many", partial(table, columns=FLOW)),
+        ("flow_bodies", "flow_bodies", partial(table, columns=BODIES)),
+        ("large", "large", partial(table, columns=LARGE, with_median=False)),
+    ):
+        if rows := results.get(part):
+            made[marker] = make(rows)
     return made
 
 

@@ -109,7 +109,7 @@ def method(studio: Studio) -> list[list[Exhibit]]:
 
 
 def gallery(studio: Studio, names: tuple[str, ...]) -> list[list[Exhibit]]:
-    """Models as they came, as quads of ours and as quads of two peers, irregular vertices marked."""
+    """Models as they came, as quads of ours and as those of two peers."""
     rows = []
     for name in names:
         ours, _, report = studio.remesh(name, N_QUADS)
