@@ -55,8 +55,9 @@ def test_materials_come_over(mesh: Arrays) -> None:
 
 def test_marked_edges_are_edges_of_the_result(mesh: Arrays) -> None:
     points, _, corners = mesh
-    sides = np.unique(np.sort(np.stack([corners, np.roll(corners, 1)], -1)), axis=0)
-    ring = sides[(np.abs(points[sides][..., 2]) < 1e-6).all(1)].astype(np.int32)
+    ends = np.stack([corners.reshape(-1, 3), np.roll(corners.reshape(-1, 3), 1, 1)], -1)
+    sides = np.unique(np.sort(ends.reshape(-1, 2)), axis=0)
+    ring = np.ascontiguousarray(sides[(np.abs(points[sides][..., 2]) < 1e-6).all(1)])
     settings = {"faces": 500, "score_samples": 0}
     plain, ringed = (
         orbflow_native.remesh(*mesh, **settings, marked_edges=edges) for edges in (None, ring)
