@@ -2,6 +2,8 @@
 
 mod common;
 
+use std::sync::Mutex;
+
 use glam::DVec3;
 use orbflow_geometry::embed::Solver;
 use orbflow_geometry::mesh::{PolygonMesh, TriangleMesh};
@@ -152,7 +154,7 @@ fn other_primitives_say_that_they_are_not_symmetric() {
 }
 
 #[test]
-fn threads_change_nothing_and_a_cancelled_run_says_so() {
+fn threads_change_nothing_progress_rises_and_a_cancelled_run_says_so() {
     let mesh = common::polygons(&even_limbs(12));
     let [one, two] = [1, 2].map(|threads| {
         let wanted = Settings {
@@ -162,6 +164,14 @@ fn threads_change_nothing_and_a_cancelled_run_says_so() {
         run(&mesh, &wanted).mesh
     });
     assert_eq!(one, two);
+    let heard = Mutex::new(Vec::new());
+    let listener = |_: &str, share: f64| heard.lock().unwrap().push(share);
+    let progress = Progress::new(CancelToken::new(), &listener);
+    let wanted = settings(Mirror::Auto);
+    remesh(Input::new(&mesh), &wanted, &Solver::default(), &progress).unwrap();
+    let shares = heard.into_inner().unwrap();
+    let fall = shares.windows(2).find(|w| w[0] > w[1] + 1e-9);
+    assert_eq!(fall, None);
     let token = CancelToken::new();
     token.cancel();
     let cancelled = remesh(

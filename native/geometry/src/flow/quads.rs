@@ -236,9 +236,10 @@ fn search(
 ) -> Result<Laid, Error> {
     let mesh = map.mesh();
     let worn = (&dressed.field, &dressed.wish);
-    let part = progress.part("", 0.2, 0.95);
-    let ends = progress.part("", 0.95, 1.0);
+    let mut from = 0.2;
     if !dressed.plan.beside.is_empty() {
+        from = 0.6;
+        let (part, ends) = (progress.part("", 0.2, 0.57), progress.part("", 0.57, from));
         let plan = &dressed.plan;
         let laid = whole(mesh, worn, plan, settings, &part)
             .and_then(|whole| lay(map, guides.mirror, (whole, plan), &ends));
@@ -260,6 +261,7 @@ fn search(
         }
     }
     let plan = planned(guides.mirror, &dressed.field, Vec::new());
+    let (part, ends) = (progress.part("", from, 0.95), progress.part("", 0.95, 1.0));
     let whole = whole(mesh, worn, &plan, settings, &part)?;
     lay(map, guides.mirror, (whole, &plan), &ends)
 }
@@ -302,7 +304,8 @@ fn lay(
 ) -> Result<Laid, Error> {
     let grid = &whole.grid;
     let quads = (grid.n_vertices, &grid.quads[..]);
-    let mut placed = place(map, quads, &grid.cells, &[], progress)?;
+    let part = progress.part("", 0.0, 0.5);
+    let mut placed = place(map, quads, &grid.cells, &[], &part)?;
     let laid = (&grid.quads[..], &placed.positions[..]);
     let lines: Vec<&Line> = plan.lines().collect();
     let seams = creases::seams(map.mesh(), &lines, &whole.complex, laid);
@@ -314,7 +317,8 @@ fn lay(
     if !seams.is_empty() {
         let goals: BTreeMap<u32, DVec3> = seams.iter().flat_map(creases::goals).collect();
         let goals: Vec<_> = goals.into_iter().collect();
-        placed = place(map, quads, &grid.cells, &goals, progress)?;
+        let part = progress.part("", 0.5, 1.0);
+        placed = place(map, quads, &grid.cells, &goals, &part)?;
     }
     Ok(Laid {
         whole,

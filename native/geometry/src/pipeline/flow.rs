@@ -130,7 +130,7 @@ pub fn flow_part(
         Ok(even) => even,
         Err(reason) => return Ok(Err(reason)),
     };
-    let mut ground = Ground {
+    let ground = Ground {
         even,
         marked,
         doubled: None,
@@ -138,37 +138,53 @@ pub fn flow_part(
         target,
         style: settings.flow(n_quads),
     };
-    let Some(axis) = asked.axis else {
-        return ground.best(clock, &progress.part("", 0.15, 1.0));
-    };
-    let part = progress.part("sphere", 0.15, 0.2);
-    let symmetric = clock.step("sphere", || {
+    match asked.axis {
+        Some(axis) => symmetric(ground, axis, clock, &progress.part("", 0.15, 1.0)),
+        None => ground.best(clock, &progress.part("", 0.15, 1.0)),
+    }
+}
+
+/// Quads that are their own image, or the usual ones where these cannot be or miss less of the
+/// surface.
+fn symmetric(
+    mut ground: Ground<'_>,
+    axis: usize,
+    clock: &mut Clock,
+    progress: &Progress<'_>,
+) -> Result<Result<FlowedPart, String>, Cancelled> {
+    let part = progress.part("sphere", 0.0, 0.05);
+    let found = clock.step("sphere", || {
         told(mirror::symmetric(&ground.even, axis, &part))
     })?;
-    let reason = match symmetric.flatten() {
+    let mut symmetric = None;
+    let reason = match found.flatten() {
         Ok((even, doubled)) => {
             let marked = doubled.carried(ground.even.mesh(), &ground.marked);
-            let usual = (
-                std::mem::replace(&mut ground.even, even),
-                std::mem::replace(&mut ground.marked, marked),
-            );
+            let even = std::mem::replace(&mut ground.even, even);
+            let marked = std::mem::replace(&mut ground.marked, marked);
             ground.doubled = Some(doubled);
-            match ground.best(clock, &progress.part("", 0.2, 0.6))? {
-                Ok(best) => return Ok(Ok(best)),
-                Err(reason) => {
-                    (ground.even, ground.marked) = usual;
-                    ground.doubled = None;
-                    reason
+            let best = ground.best(clock, &progress.part("", 0.05, 0.6))?;
+            (ground.even, ground.marked, ground.doubled) = (even, marked, None);
+            match best {
+                Ok(best) if best.n_failed < best.deformed.mesh.n_faces() => return Ok(Ok(best)),
+                Ok(best) => {
+                    symmetric = Some(best);
+                    "a part of the surface would be missed".to_owned()
                 }
+                Err(reason) => reason,
             }
         }
         Err(reason) => reason,
     };
-    let best = ground.best(clock, &progress.part("", 0.6, 1.0))?;
-    Ok(best.map(|best| FlowedPart {
+    let usual = ground.best(clock, &progress.part("", 0.6, 1.0))?;
+    let usual = usual.map(|usual| FlowedPart {
         mirrored: Some(Err(reason)),
-        ..best
-    }))
+        ..usual
+    });
+    Ok(match symmetric {
+        Some(symmetric) => better(Ok(symmetric), usual),
+        None => usual,
+    })
 }
 
 /// The one of which fewer quads fail, the first of equals; of two reasons the first.
