@@ -1,11 +1,15 @@
 //! Lines of boxes and spheres.
 
+use glam::DVec3;
+
 use super::*;
 use crate::flow::field::{Settings, orient};
+use crate::flow::{self, Guides, flow};
 use crate::measure::{sharp_edges, total_area};
 use crate::mesh::FaceMap;
 use crate::progress::Progress;
 use crate::shapes;
+use crate::sphere_map::SphereMap;
 
 const SHARP: f64 = 0.7;
 
@@ -58,4 +62,29 @@ fn closed_lines_come_once_and_round_shapes_have_none() {
             assert_eq!(mesh.target(pair[0]), mesh.origin(pair[1]));
         }
     }
+}
+
+#[test]
+fn a_box_gets_quads_whose_seams_are_its_edges() {
+    let mesh = shapes::cuboid(16);
+    let sphere = mesh.positions().iter().map(|p| p.normalize_or(DVec3::Z));
+    let sphere = sphere.collect();
+    let map = SphereMap::prove(mesh, sphere).unwrap();
+    let marked = HalfedgeMap::filled(3 * map.mesh().n_faces(), false);
+    let guides = Guides {
+        marked: &marked,
+        mirror: None,
+    };
+    let found = flow(&map, guides, &flow::Settings::new(400), &Progress::none()).unwrap();
+    assert_eq!(found.report.n_cones, 8);
+    assert_eq!(found.report.n_creases, [12, 12]);
+    assert_eq!(found.seams.len(), 12);
+    // Every corner is the end of three edges, and no strip of quads crosses itself.
+    for seam in &found.seams {
+        for end in [seam.vertices[0], seam.vertices[seam.vertices.len() - 1]] {
+            let valence = found.mesh.faces().filter(|f| f.contains(&end)).count();
+            assert_eq!(valence, 3);
+        }
+    }
+    assert!(found.report.score.spiral < 1e-12);
 }
