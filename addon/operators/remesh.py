@@ -31,7 +31,7 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """The blocking twin for scripts, background mode and the redo panel."""
-        tasks = self._tasks(context)
+        tasks = _tasks(context, self.marked_edges)
         window_manager = context.window_manager
         window_manager.progress_begin(0.0, 1.0)
         try:
@@ -49,7 +49,7 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
         """Starts the thread and stays modal until it has ended."""
         if bpy.app.background:
             return self.execute(context)
-        _running.append(Job(self._tasks(context), settings.for_core(self)))
+        _running.append(Job(_tasks(context, self.marked_edges), settings.for_core(self)))
         self._timer = context.window_manager.event_timer_add(_TICK_S, window=context.window)
         context.window_manager.modal_handler_add(self)
         context.workspace.status_text_set(_draw_status)
@@ -72,19 +72,6 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
         job.cancel()
         job.wait()
         self._tidy(context)
-
-    def _tasks(self, context: bpy.types.Context) -> list[Task]:
-        context.view_layer.update()
-        things = [each for each in context.selected_objects if each.type == "MESH"]
-        return [
-            Task(
-                each.name,
-                mesh_arrays.read(each.data, self.marked_edges),
-                tuple(each.matrix_world.to_scale()),
-            )
-            for each in things
-            if _is_editable(each)
-        ]
 
     def _end(self, context: bpy.types.Context, job: Job) -> set[str]:
         self._tidy(context)
@@ -132,6 +119,15 @@ def why_not(context: bpy.types.Context) -> str:
 
 def _is_editable(thing: bpy.types.Object) -> bool:
     return thing.is_editable and thing.data.library is None
+
+
+def _tasks(context: bpy.types.Context, marks: set[str]) -> list[Task]:
+    context.view_layer.update()
+    return [
+        Task(each.name, mesh_arrays.read(each.data, marks), tuple(each.matrix_world.to_scale()))
+        for each in context.selected_objects
+        if each.type == "MESH" and _is_editable(each)
+    ]
 
 
 def _replace(context: bpy.types.Context, outcome: Done) -> None:
