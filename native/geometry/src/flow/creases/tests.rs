@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::*;
 use crate::flow::field::{Settings, orient};
-use crate::flow::{self, Guides, flow};
+use crate::flow::{self, Flow, Guides, flow};
 use crate::measure::{sharp_edges, total_area};
 use crate::mesh::FaceMap;
 use crate::progress::Progress;
@@ -64,9 +64,8 @@ fn closed_lines_come_once_and_round_shapes_have_none() {
     }
 }
 
-#[test]
-fn a_box_gets_quads_whose_seams_are_its_edges() {
-    let mesh = shapes::cuboid(16);
+/// About 400 quads of a shape that is seen from the origin.
+fn quads_of(mesh: TriangleMesh) -> Flow {
     let sphere = mesh.positions().iter().map(|p| p.normalize_or(DVec3::Z));
     let sphere = sphere.collect();
     let map = SphereMap::prove(mesh, sphere).unwrap();
@@ -75,7 +74,20 @@ fn a_box_gets_quads_whose_seams_are_its_edges() {
         marked: &marked,
         mirror: None,
     };
-    let found = flow(&map, guides, &flow::Settings::new(400), &Progress::none()).unwrap();
+    flow(&map, guides, &flow::Settings::new(400), &Progress::none()).unwrap()
+}
+
+#[test]
+fn a_long_capsule_gets_rings_and_straight_lines_only() {
+    let Flow { report, seams, .. } = quads_of(shapes::capsule(6.0, 16));
+    assert_eq!((report.n_cones, seams.len()), (8, 0));
+    assert!(report.score.spiral < 1e-12, "{:?}", report.score);
+    assert!(report.score.loops > 0.8, "{:?}", report.score);
+}
+
+#[test]
+fn a_box_gets_quads_whose_seams_are_its_edges() {
+    let found = quads_of(shapes::cuboid(16));
     assert_eq!(found.report.n_cones, 8);
     assert_eq!(found.report.n_creases, [12, 12]);
     assert_eq!(found.seams.len(), 12);
