@@ -7,6 +7,7 @@ use super::cover::Cover;
 use super::sheet::{Point, Sheet};
 use crate::mesh::{FaceMap, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
+use crate::sphere_map::SphereMap;
 
 /// Share of an edge's own length in the length that is wanted; the rest is the mean of all. At 0
 /// quads near irregular vertices are sheared, at 0.5 lengths even out too slowly.
@@ -61,47 +62,85 @@ impl Stars {
     }
 }
 
-/// Moves every vertex that is not pinned, round by round, to the mean of where the edges to its
-/// neighbours want it: along the nearest arm of the cross, at the wanted length.
-///
-/// Moves go along the surface; those that fold the sphere or spoil a face are halved once, then
-/// refused. What faces cover is measured once, before the first of a few rounds. Returns how many
-/// moves of the last round were refused.
-pub(super) fn follow(
-    sheet: &mut Sheet,
-    (flowing, cover): (Flowing<'_>, &mut Cover),
-    (stars, n_rounds): (&Stars, usize),
-    progress: &Progress,
-) -> Result<usize, Cancelled> {
-    cover.update(sheet);
-    let mut n_refused = 0;
-    let mut ways = VertexMap::filled(sheet.n_vertices(), DVec3::ZERO);
-    for round in 0..n_rounds {
-        progress.at(round as f64 / n_rounds as f64)?;
-        let unit = unit(sheet, flowing.sizes, stars);
-        n_refused = 0;
-        for v in sheet.vertex_ids() {
-            if v.0 % 4096 == 0 {
-                progress.check()?;
-            }
-            if sheet.is_pinned(v) {
-                continue;
-            }
-            let star = stars.of(v);
-            if loosen(sheet, v, star) {
-                continue;
-            }
-            let step = wish(sheet, flowing, (v, star), unit);
-            let step = DAMPING * climb(sheet, cover, v, step) + MOMENTUM * ways[v];
-            let before = sheet.position(v);
-            let moved = slide(sheet, v, step, GUARDED_QUALITY)
-                || slide(sheet, v, step * 0.5, GUARDED_QUALITY)
-                || mend(sheet, v, unit * flowing.sizes[sheet.point(v).place.face]);
-            ways[v] = sheet.position(v) - before;
-            n_refused += usize::from(!moved);
+/// Quads on their way along a field of crosses.
+pub(super) struct Follower<'a> {
+    flowing: Flowing<'a>,
+    cover: Cover,
+    stars: Stars,
+    /// The last way of every vertex, of which it goes on for a share.
+    ways: VertexMap<DVec3>,
+}
+
+impl<'a> Follower<'a> {
+    /// At rest.
+    pub fn new(map: &SphereMap, sheet: &Sheet, flowing: Flowing<'a>) -> Self {
+        Self {
+            flowing,
+            cover: Cover::new(map, sheet),
+            stars: Stars::new(sheet),
+            ways: VertexMap::filled(sheet.n_vertices(), DVec3::ZERO),
         }
     }
-    Ok(n_refused)
+
+    /// Takes away what the vertices go on for.
+    pub fn rest(&mut self) {
+        self.ways.as_mut_slice().fill(DVec3::ZERO);
+    }
+
+    /// The neighbours of every vertex.
+    pub fn stars(&self) -> &Stars {
+        &self.stars
+    }
+
+    /// Moves every vertex that is not pinned, round by round, to the mean of where the edges to its
+    /// neighbours want it: along the nearest arm of the cross, at the wanted length.
+    ///
+    /// Moves go along the surface; those that fold the sphere or spoil a face are halved once, then
+    /// refused. What faces cover is measured once, before the first of a few rounds. Returns how
+    /// many moves of the last round were refused.
+    pub fn follow(
+        &mut self,
+        sheet: &mut Sheet,
+        n_rounds: usize,
+        progress: &Progress,
+    ) -> Result<usize, Cancelled> {
+        self.cover.update(sheet);
+        let mut n_refused = 0;
+        for round in 0..n_rounds {
+            progress.at(round as f64 / n_rounds as f64)?;
+            let unit = unit(sheet, self.flowing.sizes, &self.stars);
+            n_refused = 0;
+            for v in sheet.vertex_ids() {
+                if v.0 % 4096 == 0 {
+                    progress.check()?;
+                }
+                if !sheet.is_pinned(v) {
+                    n_refused += usize::from(!self.step(sheet, v, unit));
+                }
+            }
+        }
+        Ok(n_refused)
+    }
+
+    /// Moves one vertex; false if it stays where it does not belong.
+    fn step(&mut self, sheet: &mut Sheet, v: VertexId, unit: f64) -> bool {
+        let star = self.stars.of(v);
+        if loosen(sheet, v, star) {
+            return true;
+        }
+        let step = wish(sheet, self.flowing, (v, star), unit);
+        let step = DAMPING * climb(sheet, &self.cover, v, step) + MOMENTUM * self.ways[v];
+        let before = sheet.position(v);
+        let moved = slide(sheet, v, step, GUARDED_QUALITY)
+            || slide(sheet, v, step * 0.5, GUARDED_QUALITY)
+            || mend(
+                sheet,
+                v,
+                unit * self.flowing.sizes[sheet.point(v).place.face],
+            );
+        self.ways[v] = sheet.position(v) - before;
+        moved
+    }
 }
 
 /// Moves a vertex of an inverted face towards the middle of its neighbours, guarded by nothing but

@@ -7,9 +7,7 @@ use std::collections::BTreeSet;
 
 use glam::DVec3;
 
-use super::Flowing;
-use super::cover::Cover;
-use super::follow::{Stars, follow, walk};
+use super::follow::{Follower, Stars, walk};
 use super::project::lift_towards;
 use super::sheet::Sheet;
 use crate::measure::Seam;
@@ -46,17 +44,17 @@ impl Seams {
     /// Leads vertices to their lines and pins those that arrive.
     pub fn new(
         sheet: &mut Sheet,
-        (flowing, cover): (Flowing<'_>, &mut Cover),
-        stars: &Stars,
+        seams: &[Seam],
+        follower: &mut Follower<'_>,
         progress: &Progress,
     ) -> Result<Self, Cancelled> {
-        let tracks = flowing.seams.iter().cloned().map(Track::new).collect();
+        for pair in seams.iter().flat_map(|s| s.vertices.windows(2)) {
+            sheet.keep_edge(pair[0], pair[1]);
+        }
+        let tracks = seams.iter().cloned().map(Track::new).collect();
         let mut seams = Self { tracks };
         for v in seams.vertices().collect::<Vec<_>>() {
             sheet.pin(v);
-        }
-        for pair in flowing.seams.iter().flat_map(|s| s.vertices.windows(2)) {
-            sheet.keep_edge(pair[0], pair[1]);
         }
         for step in 0..N_STEPS {
             if seams.step(sheet) == 0 {
@@ -64,7 +62,9 @@ impl Seams {
             }
             let [from, to] = [step, step + 1].map(|s| s as f64 / N_STEPS as f64);
             let part = progress.part("", from, to);
-            follow(sheet, (flowing, cover), (stars, 1), &part)?;
+            follower.follow(sheet, 1, &part)?;
+            // With momentum it would be shoved past the vertices that walk.
+            follower.rest();
         }
         seams.pin(sheet);
         Ok(seams)

@@ -40,7 +40,9 @@ use crate::mesh::{FaceId, FaceMap, PolygonMesh, VertexId};
 use crate::progress::{Cancelled, Progress};
 use crate::sphere_map::{NotACover, SphereMap, check_cover};
 use cover::Cover;
+use follow::Follower;
 use lock::Seams;
+use reach::Span;
 use sheet::Sheet;
 pub use straddle::Anchor;
 pub use target::Target;
@@ -185,6 +187,9 @@ pub fn deform(
     }
     let fit = (settings.n_straddles, settings.anchor);
     report.n_unprojected = fit_to_target(&mut sheet, target, fit, progress)?;
+    if cover.is_none() {
+        reach::reach(&mut sheet, (target, Span::CUT_OFF), progress)?;
+    }
     Ok(Deformed::new(sheet, report))
 }
 
@@ -275,27 +280,22 @@ pub fn deform_flow(
         N_LEADS,
         &progress.part("", 0.0, 0.05),
     )?;
-    let mut cover = Cover::new(map, &sheet);
-    let stars = follow::Stars::new(&sheet);
-    let mut seams = Seams::new(
-        &mut sheet,
-        (flowing, &mut cover),
-        &stars,
-        &progress.part("", 0.05, 0.1),
-    )?;
+    let mut follower = Follower::new(map, &sheet, flowing);
+    let part = progress.part("", 0.05, 0.1);
+    let mut seams = Seams::new(&mut sheet, flowing.seams, &mut follower, &part)?;
     let n_rounds = settings.n_flow_relaxations;
     for round in (0..n_rounds).step_by(ROUNDS_PER_SLIDE) {
         let n = ROUNDS_PER_SLIDE.min(n_rounds - round);
         let [from, to] = [round, round + n].map(|r| 0.1 + 0.5 * r as f64 / n_rounds as f64);
         let part = progress.part("", from, to);
-        report.n_stuck = follow::follow(&mut sheet, (flowing, &mut cover), (&stars, n), &part)?;
-        seams.slide(&mut sheet, &stars);
+        report.n_stuck = follower.follow(&mut sheet, n, &part)?;
+        seams.slide(&mut sheet, follower.stars());
     }
     seams.release_bad(&mut sheet);
     [report.n_feature_goals, report.n_feature_vertices] = seams.counts(&sheet);
     let fit = (settings.n_straddles, settings.flow_anchor);
     report.n_unprojected = fit_to_target(&mut sheet, target, fit, progress)?;
-    reach::reach(&mut sheet, target, progress)?;
+    reach::reach(&mut sheet, (target, Span::MISSED), progress)?;
     report.n_opened = untangle::untangle(&mut sheet, progress)?;
     Ok(Deformed::new(sheet, report))
 }

@@ -211,6 +211,30 @@ fn flowing_quads_turn_along_the_crosses() {
 }
 
 #[test]
+fn momentum_lasts_from_one_call_to_the_next() {
+    let mesh = shapes::sphere(12);
+    let (map, crosses) = (radial_map(&mesh), crosses(&mesh));
+    let sizes = FaceMap::filled(crosses.len(), 1.0);
+    let quads = quad_sphere([5, 6, 7]);
+    let flowing = Flowing {
+        quads: &quads,
+        wanted: quads.positions(),
+        crosses: &crosses,
+        sizes: &sizes,
+        seams: &[],
+    };
+    let after = |calls: &[usize]| {
+        let mut sheet = Sheet::new(&map, vertex_normals(map.mesh()), &quads);
+        let mut follower = Follower::new(&map, &sheet, flowing);
+        for &n in calls {
+            follower.follow(&mut sheet, n, &Progress::none()).unwrap();
+        }
+        sheet.into_mesh().0
+    };
+    assert_eq!(after(&[8]), after(&[4, 1, 3]));
+}
+
+#[test]
 fn flowing_quads_stay_a_cover_without_inverted_quads() {
     for seed in 0..4 {
         let mesh = shapes::blob(seed, 10);
