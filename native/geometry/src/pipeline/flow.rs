@@ -80,13 +80,19 @@ impl Attempt {
 /// A part whose quads flow.
 pub struct FlowedPart {
     pub deformed: Deformed,
-    /// How many quads fail the gate: those that are inverted, or all where a part of the surface
-    /// is missed.
-    pub n_failed: usize,
+    /// How many quads the part of the surface that they miss would take.
+    pub n_missed: usize,
     pub sphere: sphere::Report,
     pub flowed: Flowed,
     /// Whether it is its own image in the plane; an error says why not, none was asked.
     pub mirrored: Option<Result<(), String>>,
+}
+
+impl FlowedPart {
+    /// How many quads fail the gate.
+    fn n_failed(&self) -> usize {
+        self.deformed.report.n_inverted + self.n_missed
+    }
 }
 
 /// What quads of a part are to be.
@@ -166,7 +172,7 @@ fn symmetric(
             let best = ground.best(clock, &progress.part("", 0.05, 0.6))?;
             (ground.even, ground.marked, ground.doubled) = (even, marked, None);
             match best {
-                Ok(best) if best.n_failed < best.deformed.mesh.n_faces() => return Ok(Ok(best)),
+                Ok(best) if best.n_missed == 0 => return Ok(Ok(best)),
                 Ok(best) => {
                     symmetric = Some(best);
                     "a part of the surface would be missed".to_owned()
@@ -193,7 +199,7 @@ fn better(
     next: Result<FlowedPart, String>,
 ) -> Result<FlowedPart, String> {
     match (&best, &next) {
-        (Ok(old), Ok(new)) if new.n_failed >= old.n_failed => best,
+        (Ok(old), Ok(new)) if new.n_failed() >= old.n_failed() => best,
         (Ok(_), Err(_)) => best,
         (Err(reason), Err(_)) if !reason.is_empty() => best,
         _ => next,
@@ -214,7 +220,7 @@ impl Ground<'_> {
             let found = self.attempt(attempt, clock, &progress.part("", from, to))?;
             from = to;
             best = better(best, found);
-            if best.as_ref().is_ok_and(|best| best.n_failed == 0) {
+            if best.as_ref().is_ok_and(|best| best.n_failed() == 0) {
                 break;
             }
         }
@@ -256,7 +262,7 @@ impl Ground<'_> {
         };
         Ok(deformed.map(evened).map(|deformed| FlowedPart {
             mirrored: self.doubled.as_ref().map(|_| Ok(())),
-            n_failed: self.n_failed(&deformed),
+            n_missed: self.n_missed(&deformed.mesh),
             deformed,
             sphere: self.sphere.clone(),
             flowed: Flowed::Used {
@@ -282,8 +288,8 @@ impl Ground<'_> {
         Ok((found, covered))
     }
 
-    /// How many quads fail the gate.
-    fn n_failed(&self, Deformed { mesh, report, .. }: &Deformed) -> usize {
+    /// How many quads a part of the surface would take that lies far from all of them.
+    fn n_missed(&self, mesh: &PolygonMesh) -> usize {
         let halves = mesh
             .faces()
             .flat_map(|f| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]]);
@@ -293,11 +299,12 @@ impl Ground<'_> {
         let bvh = Bvh::new(&halves);
         let points = self.target.mesh().positions();
         let some = points.iter().step_by(points.len().div_ceil(N_PROBES));
-        let farthest = some.map(|&p| bvh.closest(p).distance_squared);
-        if farthest.fold(0.0, f64::max) > MOST_MISSED * MOST_MISSED * quad_area {
-            return mesh.n_faces() + report.n_inverted;
-        }
-        report.n_inverted
+        let n_probes = some.len();
+        let most = MOST_MISSED * MOST_MISSED * quad_area;
+        let n_far = some
+            .filter(|&&p| bvh.closest(p).distance_squared > most)
+            .count();
+        (n_far * mesh.n_faces()).div_ceil(n_probes)
     }
 }
 
