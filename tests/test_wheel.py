@@ -58,9 +58,9 @@ def test_marked_edges_are_edges_of_the_result(mesh: Arrays) -> None:
     ends = np.stack([corners.reshape(-1, 3), np.roll(corners.reshape(-1, 3), 1, 1)], -1)
     sides = np.unique(np.sort(ends.reshape(-1, 2)), axis=0)
     ring = np.ascontiguousarray(sides[(np.abs(points[sides][..., 2]) < 1e-6).all(1)])
-    settings = {"faces": 500, "score_samples": 0}
     plain, ringed = (
-        orbflow_native.remesh(*mesh, **settings, marked_edges=edges) for edges in (None, ring)
+        orbflow_native.remesh(*mesh, faces=500, score_samples=0, marked_edges=edges)
+        for edges in (None, ring)
     )
     n_on_ring = [int((np.abs(each.positions[:, 2]) < 1e-5).sum()) for each in (plain, ringed)]
     assert n_on_ring[1] > max(20, 2 * n_on_ring[0])

@@ -88,7 +88,7 @@ def in_peer_range(rows: list[Row]) -> list[Row]:
 
 
 def remeshed(
-    bench: Bench, path: Path, asked: tuple[str | float, ...], poses: Sequence[Path] = ()
+    bench: Bench, path: Path, asked: tuple[str | int, ...], poses: Sequence[Path] = ()
 ) -> Row:
     """One run and its figures; `asked` is the primitive, the number of faces and other arguments.
 
