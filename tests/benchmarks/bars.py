@@ -12,7 +12,7 @@ Results = dict[str, list[Row]]
 
 @dataclass(frozen=True)
 class Bar:
-    """One line of the summary; `met` is None where it was not measured."""
+    """One line of the summary; `met` is None where nothing was to be reached."""
 
     what: str
     bar: str
@@ -173,7 +173,7 @@ def _flow_bodies(rows: list[Row]) -> list[Bar]:
     worst = [
         ("largest Hausdorff distance", max, "hausdorff_pct", "≤", 1.0, "{:.2f} %"),
         ("largest mean distance when posed", max, "posed_chamfer_pct", "≤", 0.03, "{:.3f} %"),
-        ("least scaled Jacobian", min, "jacobian_min", ">", 0.0, "{:.2f}"),
+        ("least scaled Jacobian", min, "jacobian_min", ">", 0.0, "{:.3f}"),
         ("fewest edges on closed loops", min, "loop_edges_pct", "≥", 35, "{:.0f} %"),
         ("most quads in spirals", max, "spiral_pct", "≤", 5, "{:.1f} %"),
     ]

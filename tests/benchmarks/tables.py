@@ -137,7 +137,7 @@ def summary(results: Results) -> str:
     """Every bar with what was measured."""
     lines = [_line(["what", "bar", "measured", "met"]), "|---|---|---|---|"]
     for bar in bars(results):
-        met = {True: "yes", False: "**no**", None: "not measured"}[bar.met]
+        met = {True: "yes", False: "**no**", None: "–"}[bar.met]
         lines.append(_line([bar.what, bar.bar, bar.measured, met]))
     return "\n".join(lines)
 
