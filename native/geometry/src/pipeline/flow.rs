@@ -58,10 +58,12 @@ pub enum Attempt {
     Smoother,
     /// A field that follows it more, and other random moves.
     Closer,
+    /// The same with sizes that differ less.
+    Evener,
 }
 
 impl Attempt {
-    const ALL: [Self; 3] = [Self::Usual, Self::Smoother, Self::Closer];
+    const ALL: [Self; 4] = [Self::Usual, Self::Smoother, Self::Closer, Self::Evener];
 
     fn settings(self, style: &flow::Settings) -> flow::Settings {
         let mut settings = style.clone();
@@ -71,6 +73,10 @@ impl Attempt {
             Self::Closer => {
                 settings.field.alignment *= 2.0;
                 settings.search.seed += 1;
+            }
+            Self::Evener => {
+                settings = Self::Closer.settings(style);
+                settings.sizes.adaptivity *= 0.6;
             }
         }
         settings
