@@ -92,24 +92,24 @@ def sentence(reports: list[dict[str, Any]]) -> str:
 
 def _without_flow(reports: list[dict[str, Any]]) -> str:
     """Which parts got the quad sphere because their quads could not flow, and why the first."""
-    parts = [part for report in reports for part in report["parts"]]
-    refused = [part for part in parts if (part["flow"] or {}).get("status") == "refused"]
-    if not refused:
-        return ""
-    of = f" in {len(refused)} of {len(parts)} parts" if len(parts) > 1 else ""
-    return f"; quad sphere instead of flow{of}: {refused[0]['flow']['reason']}"
+    return _refused(reports, "flow", "quad sphere instead of flow")
 
 
 def _without_mirror(reports: list[dict[str, Any]]) -> str:
     """Whether symmetry was asked for and could not be had, and why."""
     if any(r["settings"]["mirror"] != "off" and r["plane"] is None for r in reports):
         return "; no plane of symmetry was found"
+    return _refused(reports, "mirrored", "not symmetric")
+
+
+def _refused(reports: list[dict[str, Any]], what: str, words: str) -> str:
+    """In how many parts something was refused, and why in the first; empty where in none."""
     parts = [part for report in reports for part in report["parts"]]
-    refused = [part for part in parts if (part["mirrored"] or {}).get("status") == "refused"]
+    refused = [part for part in parts if (part[what] or {}).get("status") == "refused"]
     if not refused:
         return ""
     of = f" in {len(refused)} of {len(parts)} parts" if len(parts) > 1 else ""
-    return f"; not symmetric{of}: {refused[0]['mirrored']['reason']}"
+    return f"; {words}{of}: {refused[0][what]['reason']}"
 
 
 def rows(report: dict[str, Any]) -> list[tuple[str, str]]:

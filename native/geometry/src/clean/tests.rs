@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::*;
+use crate::shapes::CUBE_QUADS;
 
 fn cube_points() -> Vec<DVec3> {
     let bit = |i: u32, b: u32| f64::from(i >> b & 1);
@@ -12,16 +13,7 @@ fn cube_points() -> Vec<DVec3> {
 }
 
 fn cube_quads() -> Vec<Vec<u32>> {
-    [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ]
-    .map(|f| f.to_vec())
-    .to_vec()
+    CUBE_QUADS.map(|f| f.to_vec()).to_vec()
 }
 
 fn cleaned(positions: Vec<DVec3>, faces: &[Vec<u32>]) -> Result<Cleaned, Error> {

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::measure::Polyline;
 use crate::mesh::{HalfedgeMap, TriangleMesh, VertexId, VertexMap};
 
 /// Cosine of the turn at which a line has a corner even without a third line: 50°.
@@ -12,27 +13,20 @@ const CORNER_COSINE: f64 = 0.64;
 pub(super) struct FeatureLine {
     /// The vertices in order; a closed line ends with the one it starts with.
     pub vertices: Vec<VertexId>,
-    points: Vec<DVec3>,
-    /// Arc length from the start to each point.
-    lengths: Vec<f64>,
+    line: Polyline,
 }
 
 impl FeatureLine {
     fn new(mesh: &TriangleMesh, vertices: Vec<VertexId>) -> Self {
-        let points: Vec<DVec3> = vertices.iter().map(|&v| mesh.position(v)).collect();
-        let mut lengths = vec![0.0];
-        for (i, pair) in points.windows(2).enumerate() {
-            lengths.push(lengths[i] + pair[0].distance(pair[1]));
-        }
+        let points = vertices.iter().map(|&v| mesh.position(v)).collect();
         Self {
             vertices,
-            points,
-            lengths,
+            line: Polyline::new(points, false),
         }
     }
 
     pub fn length(&self) -> f64 {
-        *self.lengths.last().expect("a line starts somewhere")
+        self.line.length()
     }
 
     pub fn is_closed(&self) -> bool {
@@ -40,19 +34,13 @@ impl FeatureLine {
     }
 
     pub fn segments(&self) -> impl Iterator<Item = [DVec3; 2]> {
-        self.points.windows(2).map(|pair| [pair[0], pair[1]])
+        self.line.pieces()
     }
 
     /// The point at an arc length from the start, and the vertex before it.
     pub fn at(&self, length: f64) -> (DVec3, VertexId) {
-        let after = self.lengths.partition_point(|&l| l <= length);
-        let i = after.clamp(1, self.points.len() - 1) - 1;
-        let step = self.lengths[i + 1] - self.lengths[i];
-        let share = ((length - self.lengths[i]) / step.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        (
-            self.points[i].lerp(self.points[i + 1], share),
-            self.vertices[i],
-        )
+        let (before, _) = self.line.piece_at(length);
+        (self.line.point(length), self.vertices[before])
     }
 }
 

@@ -37,19 +37,30 @@ impl Polyline {
         self.lengths[self.lengths.len() - 1]
     }
 
+    /// The straight pieces, by their ends.
+    pub fn pieces(&self) -> impl Iterator<Item = [DVec3; 2]> {
+        self.points.windows(2).map(|pair| [pair[0], pair[1]])
+    }
+
     /// The point at an arc length; a closed line goes on at its beginning, an open one stops at
     /// its ends.
     pub fn point(&self, at: f64) -> DVec3 {
+        let (i, share) = self.piece_at(at);
+        self.points[i].lerp(self.points[i + 1], share)
+    }
+
+    /// The straight piece at an arc length, and the share of it that lies before.
+    pub fn piece_at(&self, at: f64) -> (usize, f64) {
         let at = if self.is_closed {
             at.rem_euclid(self.length())
         } else {
             at
         };
         let after = self.lengths.partition_point(|&l| l <= at);
-        let i = after.clamp(1, self.lengths.len() - 1);
-        let step = self.lengths[i] - self.lengths[i - 1];
-        let share = ((at - self.lengths[i - 1]) / step.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        self.points[i - 1].lerp(self.points[i], share)
+        let i = after.clamp(1, self.lengths.len() - 1) - 1;
+        let step = self.lengths[i + 1] - self.lengths[i];
+        let share = ((at - self.lengths[i]) / step.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        (i, share)
     }
 
     /// The arc length of the corner nearest to a position.

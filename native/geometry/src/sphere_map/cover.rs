@@ -153,21 +153,14 @@ fn check_edges(mesh: &PolygonMesh) -> Result<(), NotACover> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shapes::CUBE_QUADS;
 
     fn cube() -> (Vec<DVec3>, Vec<[u32; 4]>) {
         let corner = |i: u32| {
             let sign = |bit: u32| f64::from(i >> bit & 1) * 2.0 - 1.0;
             DVec3::new(sign(0), sign(1), sign(2)).normalize_or(DVec3::Z)
         };
-        let faces = vec![
-            [0, 2, 3, 1],
-            [4, 5, 7, 6],
-            [0, 1, 5, 4],
-            [2, 6, 7, 3],
-            [0, 4, 6, 2],
-            [1, 3, 7, 5],
-        ];
-        ((0..8).map(corner).collect(), faces)
+        ((0..8).map(corner).collect(), CUBE_QUADS.to_vec())
     }
 
     fn check(points: &[DVec3], faces: &[[u32; 4]]) -> Result<(), NotACover> {

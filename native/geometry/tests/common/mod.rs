@@ -8,6 +8,16 @@ use glam::{DMat3, DVec3};
 use orbflow_geometry::mesh::{PolygonMesh, TriangleMesh, VertexId};
 use orbflow_geometry::random::Random;
 
+/// The sides of a cube whose corner `i` has a coordinate up for every bit of `i`.
+pub const CUBE_QUADS: [[u32; 4]; 6] = [
+    [0, 2, 3, 1],
+    [4, 5, 7, 6],
+    [0, 1, 5, 4],
+    [2, 6, 7, 3],
+    [0, 4, 6, 2],
+    [1, 3, 7, 5],
+];
+
 /// A sphere of radius 1: a cube of n × n squares a side, each cut in two, blown up.
 pub fn sphere(n: u32) -> TriangleMesh {
     mapped_cube(n, |p| p.normalize_or(DVec3::Z))

@@ -62,20 +62,11 @@ fn across(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// The sides of a cube.
-    const CUBE: [[u32; 4]; 6] = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
+    use crate::shapes::CUBE_QUADS;
 
     #[test]
     fn a_cube_is_its_own_image_in_the_diagonal_plane_of_an_edge() {
-        let images = across((8, &CUBE), [VertexId(0), VertexId(1)]).unwrap();
+        let images = across((8, &CUBE_QUADS), [VertexId(0), VertexId(1)]).unwrap();
         // The edge from 0 to 1 stays, its two sides change places.
         assert_eq!(images, [0, 1, 4, 5, 2, 3, 6, 7].map(VertexId));
     }
