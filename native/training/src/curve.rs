@@ -7,6 +7,8 @@ use crate::run::Line;
 const SIZE: (u32, u32) = (900, 640);
 const TEXT: (&str, u32) = ("sans-serif", 14);
 
+/// A name, its points, its colour.
+type Curve<'a> = (&'a str, Vec<(f64, f64)>, RGBColor);
 type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 type Drawn<'a> = Result<(), DrawingAreaErrorKind<<SVGBackend<'a> as DrawingBackend>::ErrorType>>;
 
@@ -47,11 +49,7 @@ fn draw<'a>(lines: &[Line], svg: &'a mut String) -> Drawn<'a> {
     root.present()
 }
 
-fn panel<'a>(
-    area: &Area<'a>,
-    what: &str,
-    curves: &[(&str, Vec<(f64, f64)>, RGBColor)],
-) -> Drawn<'a> {
+fn panel<'a>(area: &Area<'a>, what: &str, curves: &[Curve<'_>]) -> Drawn<'a> {
     let points = || curves.iter().flat_map(|(_, points, _)| points);
     let last = points().map(|p| p.0).fold(1.0, f64::max);
     let most = points().map(|p| p.1).fold(f64::MIN_POSITIVE, f64::max);

@@ -20,18 +20,21 @@ const OPEN: &[u8] = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\n";
 
 fn obj(mesh: &TriangleMesh) -> Vec<u8> {
     let faces: Vec<_> = mesh.faces().iter().map(|f| f.map(|v| v.0)).collect();
-    let mesh = PolygonMesh::from_faces(mesh.positions().to_vec(), &faces).unwrap();
+    let mesh = PolygonMesh::from_faces(mesh.positions().to_vec(), &faces);
+    let file = MeshFile::from(mesh.expect("triangles are polygons"));
     let mut bytes = Vec::new();
-    write(&MeshFile::from(mesh), Format::Obj, &mut bytes).unwrap();
+    write(&file, Format::Obj, &mut bytes).expect("memory can be written");
     bytes
 }
 
 /// A folder with meshes good and bad, a table, and a zip file with a licence of its own.
 fn models() -> (TempDir, PathBuf) {
-    let folder = TempDir::new().unwrap();
+    let folder = TempDir::new().expect("a temporary folder can be made");
     let models = folder.path().join("models");
-    fs::create_dir_all(models.join("animals")).unwrap();
-    let put = |name: &str, bytes: &[u8]| fs::write(models.join(name), bytes).unwrap();
+    fs::create_dir_all(models.join("animals")).expect("the folder can be written");
+    let put = |name: &str, bytes: &[u8]| {
+        fs::write(models.join(name), bytes).expect("the folder can be written");
+    };
     put("animals/cat.obj", &obj(&shape(5)));
     put("open.obj", OPEN);
     put("broken.ply", b"ply\nnonsense");
@@ -43,26 +46,26 @@ fn models() -> (TempDir, PathBuf) {
         ("fish/fish_01.obj", obj(&shape(6))),
         ("../escape.obj", OPEN.to_vec()),
     ];
-    put("pack.zip", &zip(&files));
+    put("pack.zip", &zip(&files).expect("memory can be written"));
     (folder, models)
 }
 
-fn zip(files: &[(&str, Vec<u8>)]) -> Vec<u8> {
+fn zip(files: &[(&str, Vec<u8>)]) -> Result<Vec<u8>, rawzip::Error> {
     let mut bytes = Vec::new();
     let mut archive = ZipArchiveWriter::new(&mut bytes);
     for (name, text) in files {
         // As it stands, so that a name may be hostile.
         let entry = archive.new_file(EntryPath::verbatim(name.as_bytes()));
         let deflated = entry.compression_method(CompressionMethod::DEFLATE);
-        let (mut entry, config) = deflated.start().unwrap();
+        let (mut entry, config) = deflated.start()?;
         let mut out = config.wrap(DeflateEncoder::new(&mut entry, Compression::default()));
-        out.write_all(text).unwrap();
-        let (encoder, descriptor) = out.finish().unwrap();
-        encoder.finish().unwrap();
-        entry.finish(descriptor).unwrap();
+        out.write_all(text)?;
+        let (encoder, descriptor) = out.finish()?;
+        encoder.finish()?;
+        entry.finish(descriptor)?;
     }
-    archive.finish().unwrap();
-    bytes
+    archive.finish()?;
+    Ok(bytes)
 }
 
 fn settings() -> Settings {
@@ -75,7 +78,8 @@ fn settings() -> Settings {
 
 fn prepared(models: &Path, output: &Path) -> Set {
     let given = [models.to_owned()];
-    prepare(&given, &settings(), output, &Progress::none()).unwrap()
+    let set = prepare(&given, &settings(), output, &Progress::none());
+    set.expect("there is something to prepare")
 }
 
 #[test]

@@ -79,7 +79,7 @@ impl Shape {
         let mut bytes = Vec::new();
         push_all(&mut bytes, counts.map(|n| n as u32));
         for mesh in [whole, level.mesh()] {
-            let coordinates = mesh.positions().iter().flat_map(|p| p.to_array());
+            let coordinates = mesh.positions().iter().flat_map(DVec3::to_array);
             bytes.extend(coordinates.flat_map(f64::to_le_bytes));
             push_all(&mut bytes, mesh.faces().iter().flatten().map(|v| v.0));
         }

@@ -39,9 +39,9 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            n_steps: 600,
+            n_steps: 400,
             rate: 1e-2,
-            n_samples: 1_000,
+            n_samples: 800,
             edge: 1.0,
             normal: 0.1,
             laplacian: [0.5, 0.1],
@@ -156,7 +156,7 @@ impl Problem {
     /// The mean of 1 − cos between the normals of neighbouring faces.
     fn bends(&self, q: &Tensor<2>) -> Tensor<1> {
         let [a, b, c] = self.faces.clone().map(|ids| q.clone().select(0, ids));
-        let normals = cross(b - a.clone(), c - a);
+        let normals = cross(&(b - a.clone()), &(c - a));
         let length = squared(normals.clone()).add_scalar(1e-12).sqrt();
         let normals = normals / length;
         let [m, n] = self.pairs.clone().map(|ids| normals.clone().select(0, ids));
@@ -180,9 +180,9 @@ fn squared(rows: Tensor<2>) -> Tensor<2> {
     (rows.clone() * rows).sum_dim(1)
 }
 
-fn cross(p: Tensor<2>, q: Tensor<2>) -> Tensor<2> {
+fn cross(p: &Tensor<2>, q: &Tensor<2>) -> Tensor<2> {
     let column = |rows: &Tensor<2>, i: usize| rows.clone().narrow(1, i, 1);
-    let minor = |i: usize, j: usize| column(&p, i) * column(&q, j) - column(&p, j) * column(&q, i);
+    let minor = |i: usize, j: usize| column(p, i) * column(q, j) - column(p, j) * column(q, i);
     Tensor::cat(vec![minor(1, 2), minor(2, 0), minor(0, 1)], 1)
 }
 
