@@ -5,13 +5,14 @@ VENV = .venv-$(PYTHON_VERSION)
 BIN = $(VENV)/bin
 # On Linux the wheel is linked against an old C library, so that it runs wherever Blender runs.
 WHEEL_FLAGS ?= $(if $(filter Linux,$(shell uname)),--zig --compatibility manylinux_2_28)
-# The meshes that benchmarks and evaluation read.
+# The meshes that benchmarks, training and evaluation read, and the run whose weights are measured.
 DATA ?= ../shared/data
+RUN = native/training/runs/2026-11-24
 SOURCES := $(shell find Cargo.toml Cargo.lock native/*/Cargo.toml native/*/src native/python -type f 2>/dev/null)
 ADDON := $(shell find addon -type f ! -name "*.pyc")
 
 .SECONDARY: # keep the stamps
-.PHONY: help demo test test-rust test-training test-python wheel zip fixtures pictures bench evaluation lint format ci clean
+.PHONY: help demo test test-rust test-training test-python wheel zip fixtures pictures bench weights evaluation sets lint format ci clean
 
 help: ## Prints this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -44,12 +45,20 @@ bench: $(VENV)/bench.stamp ## Measures the figures of docs/benchmarks.md anew
 	cargo build --release --locked -p orbflow-cli
 	$(BIN)/python tests/benchmarks/measure.py --write docs/benchmarks.md
 
-evaluation: $(VENV)/venv.stamp ## Measures the figures of docs/evaluation.md anew
+weights: sets ## Repeats the run whose weights are committed, in dist/run
+	target/release/orbflow train dist/train.set --config $(RUN)/config.toml -o dist/run
+
+evaluation: sets $(VENV)/venv.stamp ## Measures the figures of docs/evaluation.md anew
+	target/release/orbflow evaluate dist/train.set --other dist/dev.set --baseline thesis --most 40 --finish \
+		--weights $(RUN)/weights.orbflow --report dist/evaluation.json
+	$(BIN)/python scripts/evaluation.py dist/evaluation.json docs/evaluation.md
+
+# A set that is whole stays as it is, one that was cut is gone on with: `make clean` before shapes change.
+sets:
 	cargo build --release --locked -p orbflow-cli --features train
 	mkdir -p dist
-	target/release/orbflow evaluate $(DATA)/quaternius --other $(DATA)/dev --shapes 250 --held-out 20 \
-		--most 40 --weights native/training/runs/2026-11-24/weights.orbflow --finish --report dist/evaluation.json
-	$(BIN)/python scripts/evaluation.py dist/evaluation.json docs/evaluation.md
+	target/release/orbflow prepare $(DATA)/quaternius -o dist/train.set --procedural 294
+	target/release/orbflow prepare $(DATA)/dev -o dist/dev.set
 
 lint: $(VENV)/lint.stamp ## Runs every check that is not a test
 	cargo fmt --all --check

@@ -11,12 +11,14 @@ from pathlib import Path
 from typing import Any
 
 SIDES = {
-    "training": "trained on",
-    "held_out": "held back",
-    "other": "other folders",
+    "train": "trained on",
+    "test": "held back",
+    "other": "other sets",
 }
-PREDICTORS = {
+PROPOSERS = {
     "radial": "radial projection",
+    "thesis": "thesis",
+    "thesis_target": "thesis, its targets",
     "network": "network",
     "solver": "solver",
 }
@@ -38,8 +40,9 @@ def proposals(sides: Figures) -> str:
     rows = []
     for side, report in sides.items():
         overall = report["overall"]
-        for name, title in PREDICTORS.items():
-            p = overall[name]
+        for name, title in PROPOSERS.items():
+            if (p := overall["proposals"].get(name)) is None:
+                continue
             rows.append(
                 [
                     f"{SIDES[side]} ({overall['n_shapes']})" if name == "radial" else "",
@@ -55,6 +58,25 @@ def proposals(sides: Figures) -> str:
             )
     header = ["shapes", "proposal", "distortion", "of the solver's (90 %)", "folded"]
     return table([*header, "precision", "recall", "F1"], rows)
+
+
+def gap(sides: Figures) -> str:
+    """What shapes never seen cost each learner, against those trained on."""
+    rows = []
+    for name in ("thesis", "network"):
+        seen, unseen = (sides[side]["overall"]["proposals"].get(name) for side in ("train", "test"))
+        if seen is None or unseen is None:
+            continue
+        rows.append(
+            [
+                PROPOSERS[name],
+                *(f"{p['energy_ratio']:.2f}" for p in (seen, unseen)),
+                *(f"{p['folds_pct']:.1f} %" for p in (seen, unseen)),
+                *(f"{p['f1_pct'][1]:.1f}" for p in (seen, unseen)),
+            ]
+        )
+    header = ["", "distortion, seen", "never seen", "folded, seen", "never seen"]
+    return table([*header, "F1 at 1 %, seen", "never seen"], rows)
 
 
 def angles(sides: Figures) -> str:
@@ -92,14 +114,14 @@ def whole(sides: Figures) -> str:
 def categories(sides: Figures) -> str:
     """The network's proposals in each category that it was not trained on."""
     rows = []
-    for side in ("held_out", "other"):
+    for side in ("test", "other"):
         for category, summary in sides.get(side, {"categories": {}})["categories"].items():
-            p = summary["network"]
+            radial, p = (summary["proposals"][name] for name in ("radial", "network"))
             rows.append(
                 [
                     f"{category}, {SIDES[side]}",
                     str(summary["n_shapes"]),
-                    f"{summary['radial']['energy_ratio']:.2f}",
+                    f"{radial['energy_ratio']:.2f}",
                     f"{p['energy_ratio']:.2f}",
                     f"{p['folds_pct']:.1f} %",
                     f"{p['f1_pct'][1]:.0f}",
@@ -113,7 +135,7 @@ def main(report: Path, page: Path) -> None:
     """Writes every table of a report into the page."""
     sides = json.loads(report.read_text())["sides"]
     text = page.read_text()
-    for make in (proposals, angles, whole, categories):
+    for make in (proposals, gap, angles, whole, categories):
         pattern = re.compile(rf"(<!-- measured: {make.__name__} -->\n).*?(<!-- end -->)", re.DOTALL)
         made = make(sides)
         text = pattern.sub(lambda found, made=made: f"{found[1]}\n{made}\n\n{found[2]}", text)

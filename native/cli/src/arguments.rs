@@ -1,5 +1,6 @@
 //! What can be asked for on the command line.
 
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser, ValueParser};
@@ -33,6 +34,9 @@ pub enum Command {
     /// Rebuild a mesh with a chosen number of faces
     #[command(after_help = AFTER_HELP)]
     Remesh(Remesh),
+    /// Rebuild a mesh from what the graph network proposes, or say that it could not be repaired
+    #[command(after_help = AFTER_HELP)]
+    Predict(Predict),
     /// Map every vertex of a mesh to the unit sphere
     #[command(after_help = AFTER_HELP)]
     Embed(Embed),
@@ -42,6 +46,9 @@ pub enum Command {
     /// Measure the edge flow of a mesh and its distance to another
     #[command(after_help = AFTER_HELP)]
     Score(Score),
+    /// Make a set of meshes and made shapes to train on, or go on where that was cut
+    #[cfg(feature = "train")]
+    Prepare(crate::prepare::Prepare),
     /// Train weights of the graph network, or go on where training was cut
     #[cfg(feature = "train")]
     Train(crate::train::Train),
@@ -53,7 +60,42 @@ pub enum Command {
 #[derive(Args, Debug)]
 pub struct Remesh {
     #[command(flatten)]
+    pub files: Rebuilt,
+    #[command(flatten)]
+    pub wanted: Wanted,
+    #[command(flatten)]
+    pub run: Run,
+}
+
+#[derive(Args, Debug)]
+pub struct Predict {
+    #[command(flatten)]
+    pub files: Rebuilt,
+    #[command(flatten)]
+    pub wanted: Wanted,
+    /// The weights of the network, as `orbflow train` writes them
+    #[arg(long, value_name = "FILE")]
+    pub weights: PathBuf,
+    #[command(flatten)]
+    pub work: Work,
+}
+
+/// The mesh that comes in and all that goes out.
+#[derive(Args, Debug)]
+pub struct Rebuilt {
+    #[command(flatten)]
     pub files: InAndOut,
+    /// Write what is told of the run, as JSON
+    #[arg(long, value_name = "R.json")]
+    pub report: Option<Place>,
+    /// Write the sphere that was deformed, vertex by vertex the same mesh as OUT
+    #[arg(long, value_name = "SPHERE_OUT")]
+    pub sphere: Option<Place>,
+}
+
+/// What is to be made.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct Wanted {
     /// How many faces to make
     #[arg(long, value_name = "N", default_value_t = Settings::default().faces, value_parser = n_faces())]
     pub faces: usize,
@@ -72,14 +114,6 @@ pub struct Remesh {
     /// middle of the mesh; auto finds one in which the mesh is symmetric
     #[arg(long, default_value = "off", value_parser = mirror())]
     pub mirror: Mirror,
-    #[command(flatten)]
-    pub run: Run,
-    /// Write what is told of the run, as JSON
-    #[arg(long, value_name = "R.json")]
-    pub report: Option<Place>,
-    /// Write the sphere that was deformed, vertex by vertex the same mesh as OUT
-    #[arg(long, value_name = "SPHERE_OUT")]
-    pub sphere: Option<Place>,
 }
 
 /// How quads flow.
@@ -168,6 +202,13 @@ pub struct Run {
     /// The weights of the network, as `orbflow train` writes them
     #[arg(long, value_name = "FILE", required_if_eq("predictor", "network"))]
     pub weights: Option<PathBuf>,
+    #[command(flatten)]
+    pub work: Work,
+}
+
+/// What does not change the kind of work.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct Work {
     /// How many threads to use, 0 for all; the result is the same
     #[arg(long, value_name = "T", default_value_t = 0)]
     pub threads: usize,
@@ -198,9 +239,9 @@ pub fn output_format(place: &Place, wanted: Option<Format>) -> Option<Format> {
     }
 }
 
-impl Remesh {
+impl Wanted {
     /// What the core is asked for.
-    pub fn settings(&self) -> Settings {
+    pub fn settings(&self, work: Work, files: &Rebuilt) -> Settings {
         Settings {
             faces: self.faces,
             kind: self.kind(),
@@ -211,9 +252,9 @@ impl Remesh {
             },
             sharp_angle: self.sharp_angle,
             mirror: self.mirror,
-            seed: self.run.seed,
-            threads: self.run.threads,
-            score: self.report.as_ref().map(|_| score::Settings::default()),
+            seed: work.seed,
+            threads: work.threads,
+            score: files.report.as_ref().map(|_| score::Settings::default()),
         }
     }
 
@@ -223,14 +264,25 @@ impl Remesh {
     }
 }
 
+impl Rebuilt {
+    /// Where meshes go, where the report goes, and in which format meshes are asked for.
+    fn outputs(&self) -> ([Option<&Place>; 2], Option<&Place>, Option<Format>) {
+        let meshes = [Some(&self.files.output), self.sphere.as_ref()];
+        (meshes, self.report.as_ref(), self.files.output_format)
+    }
+}
+
 impl Arguments {
     /// Checks what the parser cannot: arguments that do not go together.
     pub fn check(&self) -> Result<(), clap::Error> {
         let (meshes, reports, wanted) = match &self.command {
             Command::Remesh(a) => {
-                check_primitive(a)?;
-                let meshes = [Some(&a.files.output), a.sphere.as_ref()];
-                (meshes, a.report.as_ref(), a.files.output_format)
+                check_primitive(&a.wanted)?;
+                a.files.outputs()
+            }
+            Command::Predict(a) => {
+                check_primitive(&a.wanted)?;
+                a.files.outputs()
             }
             Command::Embed(a) => ([a.sphere.as_ref(), None], Some(&a.report), a.output_format),
             Command::Decimate(a) => {
@@ -246,6 +298,8 @@ impl Arguments {
                 )?;
                 ([None, None], a.report.as_ref(), None)
             }
+            #[cfg(feature = "train")]
+            Command::Prepare(a) => ([None, None], a.manifest.as_ref(), None),
             #[cfg(feature = "train")]
             Command::Train(_) => ([None, None], None, None),
             #[cfg(feature = "train")]
@@ -263,13 +317,13 @@ impl Arguments {
     }
 }
 
-fn check_primitive(remesh: &Remesh) -> Result<(), clap::Error> {
-    match remesh.primitive {
-        Some(primitive) if primitive.kind() != remesh.kind() => Err(wrong(format!(
+fn check_primitive(wanted: &Wanted) -> Result<(), clap::Error> {
+    match wanted.primitive {
+        Some(primitive) if primitive.kind() != wanted.kind() => Err(wrong(format!(
             "the primitive {} has {}, but --kind asks for {}",
             primitive.name(),
             primitive.kind().name(),
-            remesh.kind().name()
+            wanted.kind().name()
         ))),
         _ => Ok(()),
     }
@@ -294,7 +348,11 @@ fn wrong(message: String) -> clap::Error {
 }
 
 fn n_faces() -> ValueParser {
-    let range = MIN_FACES as u64..=MAX_FACES as u64;
+    whole(MIN_FACES as u64..=MAX_FACES as u64)
+}
+
+/// A parser of whole numbers in a range.
+pub fn whole(range: RangeInclusive<u64>) -> ValueParser {
     let parser = clap::value_parser!(u64).range(range);
     ValueParser::new(parser.map(|n| n as usize))
 }

@@ -1,27 +1,34 @@
 //! Each command: read, run the core's verb, write.
 
+use orbflow_geometry::embed::OffsetPredictor;
 use orbflow_geometry::mesh::io::{Format, MeshFile};
-use orbflow_geometry::pipeline::{self, Input};
-use orbflow_geometry::progress::Cancelled;
+use orbflow_geometry::pipeline::{self, Input, Remeshed, Settings};
+use orbflow_geometry::progress::{CancelToken, Cancelled};
 use orbflow_geometry::{clean, score};
 use serde_json::Value;
 
-use crate::arguments::{Command, Decimate, Embed, Remesh, Score, output_format};
+use crate::arguments::{
+    Command, Decimate, Embed, InAndOut, Predict, Rebuilt, Remesh, Score, output_format,
+};
 use crate::bar::with_bar;
 use crate::error::Error;
 use crate::inputs::read;
 use crate::interrupt::Interrupt;
 use crate::outputs::Outputs;
 use crate::place::Place;
+use crate::predictor::network;
 
 /// Does what was asked.
 pub fn run(command: &Command) -> Result<(), Error> {
     let interrupt = Interrupt::watch()?;
     match command {
         Command::Remesh(arguments) => remesh(arguments, &interrupt),
+        Command::Predict(arguments) => predict(arguments, &interrupt),
         Command::Embed(arguments) => embed(arguments, &interrupt),
         Command::Decimate(arguments) => decimate(arguments, &interrupt),
         Command::Score(arguments) => score(arguments, &interrupt),
+        #[cfg(feature = "train")]
+        Command::Prepare(arguments) => crate::prepare::prepare(arguments, &interrupt),
         #[cfg(feature = "train")]
         Command::Train(arguments) => Ok(crate::train::train(arguments, &interrupt)?),
         #[cfg(feature = "train")]
@@ -30,46 +37,122 @@ pub fn run(command: &Command) -> Result<(), Error> {
 }
 
 fn remesh(arguments: &Remesh, interrupt: &Interrupt) -> Result<(), Error> {
-    let Remesh {
+    let Remesh { files, wanted, run } = arguments;
+    let mut job = Rebuilding::begin(files, interrupt)?;
+    let predictor = run.build()?;
+    let settings = wanted.settings(run.work, files);
+    let remeshed = job.remesh(&settings, predictor.as_ref())?;
+    job.finish(remeshed)
+}
+
+/// The same from the network's proposal alone: no other map takes its place.
+fn predict(arguments: &Predict, interrupt: &Interrupt) -> Result<(), Error> {
+    let Predict {
         files,
-        report,
-        sphere,
-        run,
-        ..
+        wanted,
+        weights,
+        work,
     } = arguments;
-    let place = &files.input.input;
-    let file = read(place, files.input.input_format)?;
-    let token = interrupt.start_work();
-    let places = [Some(&files.output), report.as_ref(), sphere.as_ref()];
-    let mut outputs = Outputs::new(places.into_iter().flatten())?;
-    let (settings, predictor) = (arguments.settings(), run.build()?);
-    let input = Input {
-        materials: materials(&file),
-        ..Input::new(&file.mesh)
-    };
-    let remeshed = with_bar(token, |progress| {
-        pipeline::remesh(input, &settings, predictor.as_ref(), progress)
-    });
-    let remeshed = remeshed.map_err(|cause| Error::pipeline(place, cause))?;
-    tell(place, &remeshed.report.clean);
-    if let Some(report) = report {
-        outputs.write_report(report, &remeshed.report)?;
+    let mut job = Rebuilding::begin(files, interrupt)?;
+    let predictor = network(weights)?;
+    let settings = wanted.settings(*work, files);
+    let remeshed = job.remesh(&settings, &predictor)?;
+    match beyond_repair(&files.files.input.input, &remeshed.report) {
+        None => job.finish(remeshed),
+        Some(error) => {
+            job.tell_only(&remeshed.report)?;
+            Err(error)
+        }
     }
-    let mut result = MeshFile {
-        mesh: remeshed.mesh,
-        materials: remeshed.materials.unwrap_or_default(),
-        material_names: file.material_names,
-    };
-    outputs.write_mesh(
-        &files.output,
-        &result,
-        format(&files.output, files.output_format),
-    )?;
-    if let Some(sphere) = sphere {
-        result.mesh = result.mesh.with_positions(remeshed.sphere);
-        outputs.write_mesh(sphere, &result, format(sphere, files.output_format))?;
+}
+
+/// The first part whose proposal was given up.
+fn beyond_repair(place: &Place, report: &pipeline::Report) -> Option<Error> {
+    let mut parts = report.parts.iter().enumerate();
+    let (part, of_part) = parts.find(|(_, part)| part.embedding.repair.fell_back_to_solver)?;
+    let proposal = of_part.embedding.proposal;
+    Some(Error::BeyondRepair {
+        place: place.clone(),
+        part: part + 1,
+        n_parts: report.parts.len(),
+        n_folds: proposal.n_folds,
+        n_vertices: proposal.n_vertices,
+    })
+}
+
+/// A mesh on its way through the pipeline.
+struct Rebuilding<'a> {
+    files: &'a Rebuilt,
+    token: &'a CancelToken,
+    file: MeshFile,
+    outputs: Outputs,
+}
+
+impl<'a> Rebuilding<'a> {
+    fn begin(files: &'a Rebuilt, interrupt: &'a Interrupt) -> Result<Self, Error> {
+        let InAndOut { input, output, .. } = &files.files;
+        let file = read(&input.input, input.input_format)?;
+        let token = interrupt.start_work();
+        let places = [Some(output), files.report.as_ref(), files.sphere.as_ref()];
+        let outputs = Outputs::new(places.into_iter().flatten())?;
+        Ok(Self {
+            files,
+            token,
+            file,
+            outputs,
+        })
     }
-    outputs.publish(token)
+
+    fn remesh(
+        &mut self,
+        settings: &Settings,
+        predictor: &dyn OffsetPredictor,
+    ) -> Result<Remeshed, Error> {
+        let place = &self.files.files.input.input;
+        let input = Input {
+            materials: materials(&self.file),
+            ..Input::new(&self.file.mesh)
+        };
+        let remeshed = with_bar(self.token, |progress| {
+            pipeline::remesh(input, settings, predictor, progress)
+        });
+        let remeshed = remeshed.map_err(|cause| Error::pipeline(place, cause))?;
+        tell(place, &remeshed.report.clean);
+        if let Some(report) = &self.files.report {
+            self.outputs.write_report(report, &remeshed.report)?;
+        }
+        Ok(remeshed)
+    }
+
+    /// Writes all that was asked for.
+    fn finish(mut self, remeshed: Remeshed) -> Result<(), Error> {
+        let InAndOut {
+            output,
+            output_format,
+            ..
+        } = &self.files.files;
+        let mut result = MeshFile {
+            mesh: remeshed.mesh,
+            materials: remeshed.materials.unwrap_or_default(),
+            material_names: self.file.material_names,
+        };
+        let outputs = &mut self.outputs;
+        outputs.write_mesh(output, &result, format(output, *output_format))?;
+        if let Some(sphere) = &self.files.sphere {
+            result.mesh = result.mesh.with_positions(remeshed.sphere);
+            outputs.write_mesh(sphere, &result, format(sphere, *output_format))?;
+        }
+        self.outputs.publish(self.token)
+    }
+
+    /// Writes the report alone, where one was asked for.
+    fn tell_only(self, report: &pipeline::Report) -> Result<(), Error> {
+        let mut outputs = Outputs::new(&self.files.report)?;
+        if let Some(place) = &self.files.report {
+            outputs.write_report(place, report)?;
+        }
+        outputs.publish(self.token)
+    }
 }
 
 fn embed(arguments: &Embed, interrupt: &Interrupt) -> Result<(), Error> {
@@ -86,7 +169,7 @@ fn embed(arguments: &Embed, interrupt: &Interrupt) -> Result<(), Error> {
     let mut outputs = Outputs::new([Some(report), sphere.as_ref()].into_iter().flatten())?;
     let predictor = run.build()?;
     let embedded = with_bar(token, |progress| {
-        pipeline::embed(&file.mesh, run.threads, predictor.as_ref(), progress)
+        pipeline::embed(&file.mesh, run.work.threads, predictor.as_ref(), progress)
     });
     let embedded = embedded.map_err(|cause| Error::pipeline(place, cause))?;
     tell(place, &embedded.report.clean);

@@ -8,6 +8,8 @@ use orbflow_geometry::mesh::io::{ReadError, WriteError};
 use orbflow_geometry::progress::Cancelled;
 use orbflow_geometry::{pipeline, score};
 use orbflow_network::weights::ReadWeightsError;
+#[cfg(feature = "train")]
+use orbflow_training::{evaluate::outcome::OutcomeError, prepare::PrepareError, set::SetError};
 use thiserror::Error;
 
 use crate::interrupt::CANCELLED;
@@ -40,6 +42,18 @@ pub enum Error {
         place: Place,
         cause: pipeline::Error,
     },
+    /// The network's proposal for a part was no use.
+    #[error(
+        "{place}: the proposal for part {part} of {n_parts} could not be repaired: {n_folds} triangles are \
+         folded on its {n_vertices} vertices; orbflow remesh takes the solver's map in such a case"
+    )]
+    BeyondRepair {
+        place: Place,
+        part: usize,
+        n_parts: usize,
+        n_folds: usize,
+        n_vertices: usize,
+    },
     /// The meshes cannot be compared.
     #[error("cannot score: {0}")]
     Score(score::Error),
@@ -50,10 +64,22 @@ pub enum Error {
     #[cfg(feature = "train")]
     #[error(transparent)]
     Train(#[from] crate::train::Error),
-    /// There are no shapes to evaluate.
+    /// The set cannot be made, or not to its end.
     #[cfg(feature = "train")]
     #[error(transparent)]
-    Collect(#[from] orbflow_training::collect::CollectError),
+    Prepare(#[from] PrepareError),
+    /// A set cannot be read.
+    #[cfg(feature = "train")]
+    #[error(transparent)]
+    Set(#[from] SetError),
+    /// There are no shapes to evaluate.
+    #[cfg(feature = "train")]
+    #[error("the set has no such shapes")]
+    NoShapes,
+    /// The network of the thesis cannot be trained.
+    #[cfg(feature = "train")]
+    #[error(transparent)]
+    Outcome(#[from] OutcomeError),
     /// The signal handler cannot be set.
     #[error("cannot watch for ctrl-c: {0}")]
     Signal(#[from] ctrlc::Error),
@@ -73,6 +99,12 @@ impl Error {
             Self::Cancelled(_) => true,
             #[cfg(feature = "train")]
             Self::Train(error) => error.is_cancelled(),
+            #[cfg(feature = "train")]
+            Self::Prepare(error) => matches!(error, PrepareError::Cancelled { .. }),
+            #[cfg(feature = "train")]
+            Self::Set(error) => matches!(error, SetError::Cancelled(_)),
+            #[cfg(feature = "train")]
+            Self::Outcome(error) => error.is_cancelled(),
             _ => false,
         }
     }

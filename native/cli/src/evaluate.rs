@@ -2,10 +2,13 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
-use orbflow_training::collect::{CollectError, items, others};
+use clap::{Args, ValueEnum};
+use orbflow_geometry::progress::Progress;
 use orbflow_training::evaluate::outcome::Subject;
-use orbflow_training::evaluate::report::{report, thinned};
+use orbflow_training::evaluate::report::{Asked, Side, report, thinned};
+use orbflow_training::load::{LoadError, check_levels};
+use orbflow_training::set::{Set, SetError};
+use orbflow_training::thesis;
 
 use crate::bar::with_bar;
 use crate::error::Error;
@@ -13,28 +16,61 @@ use crate::interrupt::Interrupt;
 use crate::outputs::Outputs;
 use crate::place::Place;
 use crate::predictor::read_weights;
-use crate::train::Data;
+use crate::train::read_settings;
 
 #[derive(Args, Debug)]
 pub struct Evaluate {
+    /// The set that the weights were trained on, as `orbflow prepare` writes it
+    #[arg(value_name = "SET")]
+    pub set: PathBuf,
+    /// Which of its shapes to measure: those trained on, those held back
+    #[arg(long, value_enum, default_value_t = Which::All)]
+    pub split: Which,
     /// The weights, as `orbflow train` writes them
     #[arg(long, value_name = "FILE")]
     pub weights: PathBuf,
     /// Write the figures as JSON: medians by side and category, and every shape
     #[arg(long, value_name = "R.json")]
     pub report: Place,
-    #[command(flatten)]
-    pub data: Data,
-    /// Folders of meshes that training was not given; once for each
-    #[arg(long, value_name = "FOLDER")]
+    /// Sets of which training was given nothing; once for each
+    #[arg(long, value_name = "SET")]
     pub other: Vec<PathBuf>,
-    /// At most how many made shapes and files of each side, evenly taken
+    /// What to measure beside the network; radial projection and solver are measured always. The
+    /// thesis's network is trained first, on the measured shapes among those trained on
+    #[arg(long, value_enum, value_name = "NAME")]
+    pub baseline: Vec<Baseline>,
+    /// The size of the thesis's network; what it leaves out has its default
+    #[arg(long, value_name = "T.toml")]
+    pub thesis: Option<PathBuf>,
+    /// At most how many shapes of each side, evenly taken
     #[arg(long, value_name = "N", default_value_t = 200)]
     pub most: usize,
     /// Also finish the maps of whole meshes of 16,000 triangles, one after the other, for relaxations
     /// and processor time; not of shapes trained on
     #[arg(long)]
     pub finish: bool,
+}
+
+/// The sides of a set.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
+pub enum Which {
+    /// Shapes trained on
+    Train,
+    /// Shapes held back
+    Test,
+    /// Both
+    All,
+}
+
+/// What a network is compared with.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
+pub enum Baseline {
+    /// The directions from the centre
+    Radial,
+    /// Progressive embedding
+    Solver,
+    /// The pipeline of the thesis, at a size that fits a processor
+    Thesis,
 }
 
 /// Measures the network, the solver and the radial projection beside each other.
@@ -46,22 +82,70 @@ pub fn evaluate(arguments: &Evaluate, interrupt: &Interrupt) -> Result<(), Error
         path: arguments.weights.clone(),
         cause,
     })?;
-    let mut items = items(&arguments.data.sources())?;
-    for folder in &arguments.other {
-        items.extend(others(folder)?);
+    let set = Set::open(&arguments.set)?;
+    let others = arguments.other.iter().map(|path| Set::open(path));
+    let others: Vec<Set> = others.collect::<Result<_, SetError>>()?;
+    for set in others.iter().chain([&set]) {
+        check_levels(set, subject.levels())?;
     }
-    let items = thinned(&items, arguments.most);
-    if items.is_empty() {
-        return Err(CollectError::Empty { n_left_out: 0 }.into());
+    let all: Vec<Asked<'_>> = Asked::of(&set)
+        .chain(others.iter().flat_map(Asked::of_other))
+        .collect();
+    let all = thinned(&all, arguments.most);
+    let shapes: Vec<Asked<'_>> = all
+        .iter()
+        .copied()
+        .filter(|a| arguments.asks_for(a))
+        .collect();
+    if shapes.is_empty() {
+        return Err(Error::NoShapes);
     }
     let report = with_bar(token, |progress| {
-        report(
-            (&weights.header, &subject),
-            &items,
-            arguments.finish,
-            progress,
-        )
+        let has_thesis = arguments.baseline.contains(&Baseline::Thesis);
+        let (subject, from) = if has_thesis {
+            let stage = progress.part("", 0.0, 0.5);
+            (with_thesis(subject, (arguments, &set, &all), &stage)?, 0.5)
+        } else {
+            (subject, 0.0)
+        };
+        let subject = (&weights.header, &subject);
+        let stage = progress.part("measure", from, 1.0);
+        Ok::<_, Error>(report(subject, &shapes, arguments.finish, &stage)?)
     })?;
     outputs.write_report(&arguments.report, &report)?;
     outputs.publish(token)
+}
+
+/// Trains the network of the thesis on the shapes of the set that training saw.
+fn with_thesis(
+    subject: Subject,
+    (arguments, set, shapes): (&Evaluate, &Set, &[Asked<'_>]),
+    progress: &Progress,
+) -> Result<Subject, Error> {
+    let settings = match &arguments.thesis {
+        None => thesis::Settings::default(),
+        Some(path) => read_settings(path, thesis::Settings::from_toml)?,
+    };
+    let seen = shapes.iter().filter(|asked| asked.side == Side::Train);
+    let seen: Vec<_> = seen.map(|asked| asked.which).collect();
+    if seen.is_empty() {
+        return Err(Error::NoShapes);
+    }
+    Ok(subject.with_thesis((set, &seen), settings, progress)?)
+}
+
+impl Evaluate {
+    fn asks_for(&self, asked: &Asked<'_>) -> bool {
+        match self.split {
+            Which::Train => asked.side == Side::Train,
+            Which::Test => asked.side == Side::Test,
+            Which::All => true,
+        }
+    }
+}
+
+impl From<LoadError> for Error {
+    fn from(error: LoadError) -> Self {
+        Self::Train(error.into())
+    }
 }

@@ -15,6 +15,8 @@ mod outputs;
 mod place;
 mod predictor;
 #[cfg(feature = "train")]
+mod prepare;
+#[cfg(feature = "train")]
 mod train;
 
 use std::process::ExitCode;

@@ -21,7 +21,8 @@ impl Run {
     }
 }
 
-fn network(path: &Path) -> Result<NetworkPredictor, Error> {
+/// A network with the weights of a file.
+pub fn network(path: &Path) -> Result<NetworkPredictor, Error> {
     let wrong = |cause: ReadWeightsError| Error::Weights {
         path: path.to_owned(),
         cause,

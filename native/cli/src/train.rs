@@ -1,14 +1,15 @@
-//! `orbflow train`: shapes are collected, a network is trained on them, its weights are written.
+//! `orbflow train`: a network is trained on a set, its weights are written.
 
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use clap::Args;
-use orbflow_training::collect::{CollectError, Collection, Sources, collect};
+use clap::{Args, ValueEnum};
 use orbflow_training::evaluate::{Baselines, baselines};
-use orbflow_training::run::{Settings, TrainError, Training};
-use orbflow_training::sample::SampleError;
+use orbflow_training::load::{LoadError, load};
+use orbflow_training::run::{Settings, SettingsError, TrainError, Training};
+use orbflow_training::sample::{Sample, SampleError};
+use orbflow_training::set::{Set, SetError};
 use serde::Serialize;
 use thiserror::Error;
 
@@ -17,52 +18,44 @@ use crate::interrupt::Interrupt;
 
 #[derive(Args, Debug)]
 pub struct Train {
-    /// The folder of the run: checkpoint, log.jsonl, shapes.json, weights
+    /// The set, as `orbflow prepare` writes it
+    #[arg(value_name = "SET")]
+    pub set: PathBuf,
+    /// The settings of the run; what it leaves out has its default
+    #[arg(long, value_name = "C.toml")]
+    pub config: Option<PathBuf>,
+    /// The folder of the run: checkpoint, log.jsonl, curve.svg, shapes.json, weights
     #[arg(short, long, value_name = "RUN")]
     pub output: PathBuf,
-    #[command(flatten)]
-    pub data: Data,
-    /// How many steps the whole run has
-    #[arg(long, value_name = "N", default_value_t = Settings::default().n_steps)]
-    pub steps: usize,
-    /// Where random choices start; equal seeds give equal weights
-    #[arg(long, value_name = "S", default_value_t = 0)]
-    pub seed: u64,
-    /// On what data and under which licences, for the weights file
-    #[arg(long, value_name = "TEXT", default_value = "")]
-    pub provenance: String,
+    /// What to train on
+    #[arg(long, value_enum, default_value_t = Device::Cpu)]
+    pub device: Device,
 }
 
-/// What is trained on and what is held back.
-#[derive(Args, Debug)]
-pub struct Data {
-    /// Folders of meshes besides the made shapes; some files are held back, by a hash of their names
-    #[arg(value_name = "FOLDER")]
-    pub folders: Vec<PathBuf>,
-    /// How many shapes to make for training
-    #[arg(long, value_name = "N", default_value_t = 400)]
-    pub shapes: usize,
-    /// How many more to make and hold back
-    #[arg(long, value_name = "N", default_value_t = 40)]
-    pub held_out: usize,
-}
-
-impl Data {
-    /// Where its shapes come from.
-    pub fn sources(&self) -> Sources {
-        Sources {
-            n_shapes: self.shapes,
-            n_held_out: self.held_out,
-            folders: self.folders.clone(),
-        }
-    }
+/// What training can run on, if the program was built for it.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
+pub enum Device {
+    /// The processor
+    Cpu,
+    /// An NVIDIA GPU
+    Cuda,
+    /// A GPU through Vulkan, Metal or Direct3D 12
+    Wgpu,
 }
 
 /// Why training ends early.
 #[derive(Debug, Error)]
 pub enum Error {
+    #[error("this program was built for the device cpu alone, not for {name}")]
+    Device { name: String },
+    #[error("cannot read {path}: {cause}")]
+    Read { path: PathBuf, cause: io::Error },
+    #[error("{path}: {cause}")]
+    Config { path: PathBuf, cause: SettingsError },
     #[error(transparent)]
-    Collect(#[from] CollectError),
+    Set(#[from] SetError),
+    #[error(transparent)]
+    Load(#[from] LoadError),
     #[error("cannot measure the solver on the held-out shapes: {0}")]
     Sample(#[from] SampleError),
     #[error(transparent)]
@@ -76,7 +69,7 @@ impl Error {
     pub fn is_cancelled(&self) -> bool {
         matches!(
             self,
-            Self::Collect(CollectError::Cancelled(_)) | Self::Train(TrainError::Cancelled(_))
+            Self::Load(LoadError::Cancelled(_)) | Self::Train(TrainError::Cancelled(_))
         )
     }
 }
@@ -84,49 +77,82 @@ impl Error {
 /// What a run was trained on, and what there is to beat.
 #[derive(Serialize)]
 struct Shapes<'a> {
-    sources: &'a Sources,
+    set: &'a str,
+    is_complete: bool,
     n_training: usize,
     n_held_out: usize,
     baselines: Baselines,
-    left_out: Vec<(&'a Path, &'a str)>,
 }
 
 /// Trains until the steps are done or the user stops; the next call goes on from there.
 pub fn train(arguments: &Train, interrupt: &Interrupt) -> Result<(), Error> {
     let token = interrupt.start_work();
-    let settings = Settings {
-        n_steps: arguments.steps,
-        seed: arguments.seed,
-        ..Settings::default()
+    check_device(arguments.device)?;
+    let settings = match &arguments.config {
+        Some(path) => read_settings(path, Settings::from_toml)?,
+        None => Settings::default(),
     };
-    let sources = arguments.data.sources();
+    let set = Set::open(&arguments.set)?;
+    let manifest = set.manifest();
+    let about = manifest.sentence();
+    if !manifest.is_complete {
+        let (n, n_all) = (manifest.sources.len(), manifest.asked.n_sources);
+        eprintln!("the set is not complete: {n} of {n_all} sources are in it");
+    }
+    let levels = &settings.sizes.levels;
+    let [training, held_out] = with_bar(token, |progress| load(&set, levels, progress))?;
     let run = &arguments.output;
     fs::create_dir_all(run).map_err(|cause| write_error(run, cause))?;
-    let levels = settings.sizes.levels.clone();
-    let shapes = with_bar(token, |progress| collect(&sources, &levels, progress))?;
-    write_shapes(&sources, &shapes, run)?;
-    let mut training = Training::resumed(settings, run)?;
+    let mut trained = Training::resumed(settings, run)?;
+    write_shapes(&about, manifest.is_complete, [&training, &held_out], run)?;
     with_bar(token, |progress| {
-        training.run([&shapes.training, &shapes.held_out], run, progress)
+        trained.run([&training, &held_out], run, progress)
     })?;
-    let weights = training.weights(&arguments.provenance);
-    write(&run.join("weights.orbflow"), &weights.to_bytes())
+    write(
+        &run.join("weights.orbflow"),
+        &trained.weights(&about).to_bytes(),
+    )
 }
 
-fn write_shapes(sources: &Sources, shapes: &Collection, run: &Path) -> Result<(), Error> {
+fn check_device(device: Device) -> Result<(), Error> {
+    match device {
+        Device::Cpu => Ok(()),
+        Device::Cuda | Device::Wgpu => {
+            let value = device.to_possible_value();
+            let name = value.map_or(String::new(), |value| value.get_name().to_owned());
+            Err(Error::Device { name })
+        }
+    }
+}
+
+/// Reads a file of settings.
+pub fn read_settings<T>(
+    path: &Path,
+    from_toml: impl Fn(&str) -> Result<T, SettingsError>,
+) -> Result<T, Error> {
+    let path = path.to_owned();
+    match fs::read_to_string(&path) {
+        Err(cause) => Err(Error::Read { path, cause }),
+        Ok(text) => from_toml(&text).map_err(|cause| Error::Config { path, cause }),
+    }
+}
+
+fn write_shapes(
+    set: &str,
+    is_complete: bool,
+    [training, held_out]: [&[Sample]; 2],
+    run: &Path,
+) -> Result<(), Error> {
     let path = run.join("shapes.json");
     if path.exists() {
         return Ok(());
     }
-    let left_out = shapes.left_out.iter();
     let shapes = Shapes {
-        sources,
-        n_training: shapes.training.len(),
-        n_held_out: shapes.held_out.len(),
-        baselines: baselines(&shapes.held_out)?,
-        left_out: left_out
-            .map(|(path, why)| (path.as_path(), why.as_str()))
-            .collect(),
+        set,
+        is_complete,
+        n_training: training.len(),
+        n_held_out: held_out.len(),
+        baselines: baselines(held_out)?,
     };
     let text = serde_json::to_vec_pretty(&shapes).map_err(io::Error::from);
     write(&path, &text.map_err(|cause| write_error(&path, cause))?)

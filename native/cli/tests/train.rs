@@ -1,4 +1,4 @@
-//! Training and evaluation as a user meets them: a run, its weights, their figures.
+//! Sets, training and evaluation as a user meets them: a set, a run, its weights, their figures.
 #![cfg(feature = "train")]
 
 mod support;
@@ -8,12 +8,24 @@ use std::fs;
 use serde_json::Value;
 use support::{Folder, ball, run};
 
-/// Trains for two steps on three made shapes; the path of the weights.
-fn trained(folder: &Folder) -> String {
+/// A set of seven made shapes, one of them held back.
+fn prepared(folder: &Folder) -> String {
+    let set = folder.path("shapes.set");
+    let done = run(&["prepare", "--procedural", "7", "-o", &set]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert!(
+        done.err.contains("6 shapes to train on, 1 held back"),
+        "{}",
+        done.err
+    );
+    set
+}
+
+/// Trains for two steps; the path of the weights.
+fn trained(folder: &Folder, set: &str) -> String {
     let output = folder.path("run");
-    let shapes = ["--shapes", "2", "--held-out", "1"];
-    let arguments = [&["train", "-o", &output, "--steps", "2"][..], &shapes].concat();
-    let done = run(&arguments);
+    let config = folder.write("c.toml", "n_steps = 2\n");
+    let done = run(&["train", set, "--config", &config, "-o", &output]);
     assert_eq!(done.code, 0, "{}", done.err);
     format!("{output}/weights.orbflow")
 }
@@ -26,8 +38,14 @@ fn json(path: &str) -> Value {
 #[test]
 fn a_run_leaves_weights_that_embed_and_evaluate_take() {
     let folder = Folder::new();
-    let weights = trained(&folder);
-    for name in ["log.jsonl", "shapes.json", "checkpoint/state.json"] {
+    let set = prepared(&folder);
+    let weights = trained(&folder, &set);
+    for name in [
+        "log.jsonl",
+        "curve.svg",
+        "shapes.json",
+        "checkpoint/state.json",
+    ] {
         assert!(fs::exists(folder.path(&format!("run/{name}"))).unwrap());
     }
 
@@ -38,35 +56,104 @@ fn a_run_leaves_weights_that_embed_and_evaluate_take() {
     assert_eq!(done.code, 0, "{}", done.err);
     assert_eq!(json(&report)["embedding"]["predictor"], "network");
 
-    let report = folder.path("evaluation.json");
-    let (balls, shapes) = (folder.path("balls"), ["--shapes", "2", "--held-out", "1"]);
+    let [balls, manifest] = ["balls", "manifest.json"].map(|name| folder.path(name));
     fs::create_dir(&balls).unwrap();
     fs::write(format!("{balls}/ball.obj"), ball("")).unwrap();
     fs::write(format!("{balls}/empty.obj"), "").unwrap();
-    let evaluate = ["evaluate", "--weights", &weights, "--report", &report];
-    let others = ["--other", &balls, "--finish"];
-    let done = run(&[&evaluate[..], &shapes, &others].concat());
+    let other = folder.path("balls.set");
+    let done = run(&["prepare", &balls, "-o", &other, "--manifest", &manifest]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let manifest = json(&manifest);
+    assert_eq!(manifest["n_left_out"], 1);
+    assert_eq!(manifest["sources"][0]["name"], "balls/ball.obj");
+
+    let report = folder.path("evaluation.json");
+    let evaluate = ["evaluate", &set, "--weights", &weights, "--report", &report];
+    let done = run(&[&evaluate[..], &["--other", &other, "--finish"]].concat());
     assert_eq!(done.code, 0, "{}", done.err);
     let figures = json(&report);
-    for (side, n_shapes) in [("training", 2), ("held_out", 1), ("other", 1)] {
+    for (side, n_shapes) in [("train", 6), ("test", 1), ("other", 1)] {
         let overall = &figures["sides"][side]["overall"];
+        let proposals = &overall["proposals"];
         assert_eq!(overall["n_shapes"], n_shapes, "{side}");
-        assert_eq!(overall["solver"]["energy_ratio"], 1.0, "{side}");
-        assert_eq!(overall["solver"]["folds_pct"], 0.0, "{side}");
-        assert!(overall["network"]["energy_ratio"].as_f64().unwrap() > 0.9);
-        assert_eq!(overall["whole"].is_null(), side == "training");
+        assert_eq!(proposals["solver"]["energy_ratio"], 1.0, "{side}");
+        assert_eq!(proposals["solver"]["folds_pct"], 0.0, "{side}");
+        assert!(proposals["network"]["energy_ratio"].as_f64().unwrap() > 0.9);
+        assert_eq!(overall["whole"].is_null(), side == "train");
     }
     assert_eq!(figures["sides"]["other"]["shapes"][0]["category"], "balls");
-    assert_eq!(figures["left_out"].as_array().unwrap().len(), 1);
+    let done = run(&[&evaluate[..], &["--split", "test"]].concat());
+    assert_eq!(done.code, 0, "{}", done.err);
+    let sides = json(&report)["sides"].clone();
+    assert_eq!(
+        sides.as_object().unwrap().keys().collect::<Vec<_>>(),
+        ["test"]
+    );
 }
 
 #[test]
-fn what_is_no_weights_file_is_named() {
+fn what_is_no_weights_file_or_no_set_is_named() {
     let folder = Folder::new();
     let wrong = folder.write("ball.obj", &ball(""));
     let report = folder.path("evaluation.json");
-    let done = run(&["evaluate", "--weights", &wrong, "--report", &report]);
+    let done = run(&["evaluate", &wrong, "--weights", &wrong, "--report", &report]);
     assert_eq!(done.code, 3);
-    assert!(done.err.contains("ball.obj"), "{}", done.err);
+    assert!(
+        done.err.contains("ball.obj: these are no weights"),
+        "{}",
+        done.err
+    );
+    let done = run(&["train", &wrong, "-o", &folder.path("run")]);
+    assert_eq!(done.code, 3);
+    assert!(
+        done.err.contains("ball.obj is no set of orbflow"),
+        "{}",
+        done.err
+    );
     assert_eq!(folder.names(), ["ball.obj"]);
+}
+
+#[test]
+fn settings_and_devices_that_cannot_be_are_named() {
+    let folder = Folder::new();
+    let (set, output) = (folder.path("no.set"), folder.path("run"));
+    for (text, words) in [
+        ("steps = 5", "unknown field `steps`"),
+        ("n_steps = 0", "n_steps = 0; it must be 1 or more"),
+        ("rate = 2.0", "rate = 2; it must be above 0"),
+        ("rate = nan", "rate = NaN"),
+        (
+            "[sizes]\nwidth = 0\nlevels = [9]\nblocks = [1]",
+            "width = 0",
+        ),
+        (
+            "[sizes]\nwidth = 8\nlevels = [9, 30]\nblocks = [1, 1]",
+            "do not fall",
+        ),
+    ] {
+        let config = folder.write("c.toml", text);
+        let done = run(&["train", &set, "--config", &config, "-o", &output]);
+        assert_eq!(done.code, 3, "{text}");
+        assert!(done.err.contains(words), "{text}: {}", done.err);
+    }
+    let done = run(&["train", &set, "-o", &output, "--device", "cuda"]);
+    assert_eq!(done.code, 3);
+    assert!(done.err.contains("not for cuda"), "{}", done.err);
+    assert_eq!(run(&["prepare", "-o", &set]).code, 2);
+    assert_eq!(folder.names(), ["c.toml"]);
+}
+
+#[test]
+fn a_set_too_coarse_for_the_levels_is_refused_with_what_would_do() {
+    let folder = Folder::new();
+    let set = folder.path("coarse.set");
+    let done = run(&["prepare", "--procedural", "1", "--faces", "400", "-o", &set]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let done = run(&["train", &set, "-o", &folder.path("run")]);
+    assert_eq!(done.code, 3);
+    assert!(
+        done.err.contains("prepare it with --faces 3000"),
+        "{}",
+        done.err
+    );
 }

@@ -109,6 +109,16 @@ pub enum ReadWeightsError {
     },
 }
 
+impl Header {
+    /// Checks that this program can do a network of these sizes.
+    ///
+    /// # Errors
+    /// [`ReadWeightsError`], the first size that it cannot do.
+    pub fn check(&self) -> Result<(), ReadWeightsError> {
+        check_sizes(self)
+    }
+}
+
 impl Weights {
     /// The bytes of a weights file, parameters in half precision.
     pub fn to_bytes(&self) -> Vec<u8> {

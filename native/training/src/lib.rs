@@ -1,18 +1,26 @@
 //! Trains Orbflow's graph network. Not part of the wheel.
 //!
 //! ```text
-//! shapes, files ─ collect ─▶ samples ─ run: batch ─ network ─ loss ─ AdamW ─▶ checkpoint, log, weights
+//! seeds, files ─ sources ─ prepare ─▶ set ─▶ samples ─ run: batch ─ network ─ loss ─ AdamW ─▶ checkpoint, log, weights
+//!                                      └──▶ evaluate ─▶ report
 //! ```
 //!
 //! There are no targets: the [`loss`] is the distortion of the proposed map. What was tried and
 //! what it reached is in `docs/training.md`.
 
-pub mod collect;
+mod curve;
 pub mod evaluate;
+mod licence;
+pub mod load;
 pub mod loss;
 pub mod net;
 pub mod parts;
+pub mod prepare;
 pub mod run;
 pub mod sample;
 mod schedule;
+pub mod set;
 pub mod shapes;
+mod sources;
+pub mod thesis;
+mod zips;

@@ -1,21 +1,31 @@
 //! The parts of a mesh that can be trained on, and how they are brought to size.
 
-use glam::DVec3;
 use orbflow_geometry::mesh::{Id, TriangleMesh, VertexId};
+use orbflow_geometry::progress::Progress;
 
-/// The components that are closed and of genus 0.
-pub fn closed_parts(mesh: &TriangleMesh) -> Vec<TriangleMesh> {
-    let (component, n) = mesh.face_components();
-    let mut faces: Vec<Vec<[VertexId; 3]>> = vec![Vec::new(); n];
-    for (face, &of) in mesh.faces().iter().zip(&component) {
-        faces[of as usize].push(*face);
+/// The components of a mesh, those that can be trained on and how many cannot.
+#[derive(Clone, Debug)]
+pub struct Parts {
+    /// Those that are closed and of genus 0.
+    pub usable: Vec<TriangleMesh>,
+    /// How many have a border.
+    pub n_open: usize,
+    /// How many are closed but have handles.
+    pub n_with_handles: usize,
+}
+
+/// Splits a mesh into its components.
+pub fn split(mesh: &TriangleMesh) -> Parts {
+    let parts = mesh.components(&Progress::none());
+    let parts = parts.expect("nobody cancels");
+    let (closed, open): (Vec<_>, Vec<_>) = parts.into_iter().partition(TriangleMesh::is_closed);
+    let is_usable = |part: &TriangleMesh| part.euler_number() == 2;
+    let (usable, with_handles): (Vec<_>, Vec<_>) = closed.into_iter().partition(is_usable);
+    Parts {
+        usable,
+        n_open: open.len(),
+        n_with_handles: with_handles.len(),
     }
-    let parts = faces
-        .into_iter()
-        .filter_map(|faces| compact(mesh.positions(), &faces));
-    parts
-        .filter(|part| part.is_closed() && part.euler_number() == 2)
-        .collect()
 }
 
 /// Each triangle in four, until there are at least `n_faces`; the surface stays what it is.
@@ -49,19 +59,4 @@ fn quartered(mesh: &TriangleMesh) -> TriangleMesh {
     });
     let faces = quarters.collect();
     TriangleMesh::new(positions, faces).expect("a subdivided manifold is one")
-}
-
-/// The mesh of some faces of another, with only the vertices that they use.
-fn compact(positions: &[DVec3], faces: &[[VertexId; 3]]) -> Option<TriangleMesh> {
-    let mut ids = vec![VertexId(u32::MAX); positions.len()];
-    let mut used = Vec::new();
-    let mut id = |v: VertexId| {
-        if ids[v.index()].0 == u32::MAX {
-            ids[v.index()] = VertexId::from_index(used.len());
-            used.push(positions[v.index()]);
-        }
-        ids[v.index()]
-    };
-    let faces = faces.iter().map(|f| f.map(&mut id)).collect();
-    TriangleMesh::new(used, faces).ok()
 }

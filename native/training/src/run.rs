@@ -15,20 +15,22 @@ use orbflow_network::features::N_FEATURES;
 use orbflow_network::frame::half_turns;
 use orbflow_network::net::{Network, Sizes};
 use orbflow_network::pyramid::Pyramid;
-use orbflow_network::weights::{Header, Weights};
+use orbflow_network::weights::{Header, ReadWeightsError, Weights};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use crate::curve::curve;
 use crate::evaluate::{Figures, evaluate};
 use crate::loss::Faces;
 use crate::net::BurnNetwork;
 use crate::sample::Sample;
 use crate::schedule::one_cycle;
 
-/// How a network is trained.
+/// How a network is trained. What a file of settings leaves out has its default.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// The network.
+    /// The network: `[sizes]` with width, levels and blocks.
     pub sizes: Sizes,
     /// How many steps the whole run has; the rate follows from it.
     pub n_steps: usize,
@@ -55,6 +57,76 @@ impl Default for Settings {
     }
 }
 
+/// Why settings cannot be used.
+#[derive(Clone, PartialEq, Debug, Error)]
+pub enum SettingsError {
+    /// The text is no such file.
+    #[error("{0}")]
+    Toml(#[from] toml::de::Error),
+    /// A number is out of its range.
+    #[error("{name} = {found}; it must be {wanted}")]
+    Range {
+        /// Which.
+        name: &'static str,
+        /// What it is.
+        found: String,
+        /// What it may be.
+        wanted: &'static str,
+    },
+    /// No weights file could hold the network.
+    #[error("sizes: {0}")]
+    Sizes(#[from] ReadWeightsError),
+}
+
+impl Settings {
+    /// Reads settings as TOML.
+    ///
+    /// # Errors
+    /// [`SettingsError`], with the line of the text.
+    pub fn from_toml(text: &str) -> Result<Self, SettingsError> {
+        let settings: Self = toml::from_str(text)?;
+        settings.check()?;
+        Ok(settings)
+    }
+
+    fn check(&self) -> Result<(), SettingsError> {
+        let Self {
+            n_steps,
+            batch,
+            rate,
+            interval,
+            ..
+        } = self;
+        for (name, found) in [
+            ("n_steps", n_steps),
+            ("batch", batch),
+            ("interval", interval),
+        ] {
+            if *found == 0 {
+                return Err(SettingsError::Range {
+                    name,
+                    found: found.to_string(),
+                    wanted: "1 or more",
+                });
+            }
+        }
+        // More than 1 is what burn refuses; it would also diverge.
+        if !(*rate > 0.0 && *rate <= 1.0) {
+            return Err(SettingsError::Range {
+                name: "rate",
+                found: rate.to_string(),
+                wanted: "above 0 and at most 1",
+            });
+        }
+        let header = Header {
+            sizes: self.sizes.clone(),
+            n_features: N_FEATURES,
+            provenance: String::new(),
+        };
+        Ok(header.check()?)
+    }
+}
+
 /// A network on its way.
 pub struct Training {
     network: BurnNetwork,
@@ -65,7 +137,7 @@ pub struct Training {
 }
 
 /// A line of the log.
-#[derive(Clone, PartialEq, Debug, Serialize)]
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 pub struct Line {
     /// How many steps were done.
     pub step: usize,
@@ -200,8 +272,10 @@ impl Training {
         progress: &Progress,
     ) -> Result<(), TrainError> {
         let (mut sum, mut n) = (0.0, 0);
+        let mut told = "train".to_owned();
         while self.step < self.settings.n_steps {
-            progress.at(self.step as f64 / self.settings.n_steps as f64)?;
+            let share = self.step as f64 / self.settings.n_steps as f64;
+            progress.part(&told, 0.0, 1.0).at(share)?;
             // From the step's number alone, so that a resumed run sees what the whole one does.
             let mut random = Random::new(self.settings.seed ^ (self.step as u64) << 20);
             let batch = 0..self.settings.batch;
@@ -228,6 +302,10 @@ impl Training {
                 (sum, n) = (0.0, 0);
                 self.keep(run)?;
                 log(run, &line)?;
+                told = format!(
+                    "loss {:.3}, folds {:.2} %",
+                    line.loss, line.held_out.folds_pct
+                );
             }
         }
         Ok(())
@@ -283,6 +361,7 @@ fn optimizer() -> ModuleOptimizer {
     config.with_grad_clipping(Some(clipping)).init()
 }
 
+/// Adds a line to the log and draws all of it.
 fn log(run: &Path, line: &Line) -> Result<(), TrainError> {
     let path = run.join("log.jsonl");
     let open = OpenOptions::new().create(true).append(true).open(&path);
@@ -291,7 +370,15 @@ fn log(run: &Path, line: &Line) -> Result<(), TrainError> {
         writeln!(file, "{text}")
     };
     open.and_then(write)
-        .map_err(|cause| file_error(&path, cause))
+        .map_err(|cause| file_error(&path, cause))?;
+    let text = fs::read_to_string(&path).map_err(|cause| file_error(&path, cause))?;
+    // A line that a kill cut, or that holds no number, is not drawn.
+    let lines: Vec<Line> = text
+        .lines()
+        .filter_map(|line| serde_json::from_str(line).ok())
+        .collect();
+    let path = run.join("curve.svg");
+    fs::write(&path, curve(&lines)).map_err(|cause| file_error(&path, cause))
 }
 
 fn file_error(path: &Path, cause: io::Error) -> TrainError {

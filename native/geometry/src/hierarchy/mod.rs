@@ -8,11 +8,14 @@
 //!
 //! `decimate` makes it; predictors read it; `embed` undoes it on the sphere (Praun & Hoppe 2003).
 
+mod builder;
+
 use std::ops::Range;
 
 use thiserror::Error;
 
 use crate::mesh::{Id, TriangleMesh, VertexId, VertexMap};
+pub use builder::HierarchyBuilder;
 
 /// A recorded half-edge collapse, seen from the hierarchy that holds it.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -59,70 +62,34 @@ pub enum HierarchyError {
         /// The vertex it removed.
         vertex: VertexId,
     },
-}
-
-/// Collects collapses in the order in which they are made.
-#[derive(Clone, Debug, Default)]
-pub struct HierarchyBuilder {
-    vertices: Vec<VertexId>,
-    starts: Vec<u32>,
-    rings: Vec<VertexId>,
-    rounds: Vec<u32>,
-}
-
-impl HierarchyBuilder {
-    /// An empty record.
-    pub fn new() -> Self {
-        Self {
-            starts: vec![0],
-            rounds: vec![0],
-            ..Self::default()
-        }
-    }
-
-    /// Records the collapse of `vertex` into `ring[0]`.
-    pub fn push(&mut self, vertex: VertexId, ring: &[VertexId]) {
-        self.vertices.push(vertex);
-        self.rings.extend_from_slice(ring);
-        self.starts.push(self.rings.len() as u32);
-    }
-
-    /// Ends a round of independent collapses; an empty round is not kept.
-    pub fn end_round(&mut self) {
-        let n = self.vertices.len() as u32;
-        if self.rounds.last() != Some(&n) {
-            self.rounds.push(n);
-        }
-    }
-
-    /// Joins the records with the mesh that they start from and the tetrahedron that they end in.
-    ///
-    /// # Errors
-    /// In debug builds, when undoing the records does not give the mesh back.
-    pub fn build(
-        mut self,
-        mesh: TriangleMesh,
-        base: [[VertexId; 3]; 4],
-    ) -> Result<CollapseHierarchy, HierarchyError> {
-        self.end_round();
-        let Self {
-            vertices,
-            starts,
-            rings,
-            rounds,
-        } = self;
-        let hierarchy = CollapseHierarchy {
-            mesh,
-            base,
-            vertices,
-            starts,
-            rings,
-            rounds,
-        };
-        #[cfg(debug_assertions)]
-        hierarchy.check()?;
-        Ok(hierarchy)
-    }
+    /// A record names a vertex that the mesh does not have, or has too short a ring.
+    #[error(
+        "collapse {index} names vertex {vertex} with a ring of {n_ring}, in a mesh of {n_vertices} vertices"
+    )]
+    NoSuchCollapse {
+        /// Which record.
+        index: usize,
+        /// The vertex out of range, or the one with the short ring.
+        vertex: VertexId,
+        /// How many neighbours the record has.
+        n_ring: usize,
+        /// How many vertices there are.
+        n_vertices: usize,
+    },
+    /// The four faces at the end are no tetrahedron.
+    #[error("the coarsest level is no tetrahedron: its faces have {n_corners} different corners")]
+    NoTetrahedron {
+        /// How many corners there are.
+        n_corners: usize,
+    },
+    /// Two collapses of a round depend on each other.
+    #[error("collapse {index} of vertex {vertex} touches another of its round")]
+    Dependent {
+        /// Which record.
+        index: usize,
+        /// The vertex it removed.
+        vertex: VertexId,
+    },
 }
 
 impl CollapseHierarchy {
@@ -248,6 +215,25 @@ impl CollapseHierarchy {
             n_wanted: wanted.len(),
         })
     }
+
+    /// Checks that no two vertices of a round are neighbours when they are removed.
+    fn check_rounds(&self) -> Result<(), HierarchyError> {
+        let mut round_of = VertexMap::filled(self.n_vertices(), usize::MAX);
+        for round in 0..self.n_rounds() {
+            for index in self.round(round) {
+                round_of[self.vertices[index]] = round;
+            }
+        }
+        for round in 0..self.n_rounds() {
+            for index in self.round(round) {
+                let Collapse { vertex, ring } = self.collapse(index);
+                if ring.iter().any(|&v| round_of[v] == round) {
+                    return Err(HierarchyError::Dependent { index, vertex });
+                }
+            }
+        }
+        Ok(())
+    }
 }
 
 /// Whether two triangles have the same corners in the same direction.
@@ -268,52 +254,4 @@ impl Collapse<'_> {
 }
 
 #[cfg(test)]
-mod tests {
-    use glam::DVec3;
-
-    use super::*;
-
-    /// A tetrahedron 0 1 2 3 whose face (1, 2, 3) is split by vertex 4.
-    fn split_tetrahedron() -> (TriangleMesh, [[VertexId; 3]; 4]) {
-        let ids = |f: [u32; 3]| f.map(VertexId);
-        let points = vec![DVec3::NEG_Z, DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE];
-        let split = [
-            [0, 2, 1],
-            [0, 1, 3],
-            [2, 0, 3],
-            [4, 1, 2],
-            [4, 2, 3],
-            [4, 3, 1],
-        ];
-        let base = [[0, 2, 1], [0, 1, 3], [2, 0, 3], [1, 2, 3]];
-        (
-            TriangleMesh::new(points, split.map(ids).to_vec()).unwrap(),
-            base.map(ids),
-        )
-    }
-
-    #[test]
-    fn an_undone_collapse_gives_the_mesh_back() {
-        let (mesh, base) = split_tetrahedron();
-        let mut builder = HierarchyBuilder::new();
-        builder.push(VertexId(4), &[1, 2, 3].map(VertexId));
-        builder.end_round();
-        let hierarchy = builder.build(mesh, base).unwrap();
-        assert_eq!(hierarchy.check(), Ok(()));
-        assert_eq!((hierarchy.n_rounds(), hierarchy.round(0)), (1, 0..1));
-        assert_eq!(hierarchy.faces_at(4).unwrap(), base);
-        assert_eq!(hierarchy.coarse_to_fine(), [0, 2, 1, 3, 4].map(VertexId));
-    }
-
-    #[test]
-    fn a_ring_in_the_wrong_direction_is_refused() {
-        let (mesh, base) = split_tetrahedron();
-        let mut builder = HierarchyBuilder::new();
-        builder.push(VertexId(4), &[1, 3, 2].map(VertexId));
-        let error = builder.build(mesh, base).unwrap_err();
-        assert!(
-            matches!(error, HierarchyError::RingMissing { index: 0, .. }),
-            "{error}"
-        );
-    }
-}
+mod tests;

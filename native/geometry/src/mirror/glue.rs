@@ -42,27 +42,12 @@ fn largest_piece(side: &Side) -> Result<(TriangleMesh, Vec<[VertexId; 2]>), Doub
         areas[c] += (q - p).cross(r - p).length();
     }
     let largest = (0..n).max_by(|&a, &b| areas[a].total_cmp(&areas[b]).then(b.cmp(&a)));
-    let mut local = vec![VertexId(u32::MAX); side.positions.len()];
-    let mut positions = Vec::new();
-    let mut sources = Vec::new();
-    let mut faces = Vec::new();
-    for (face, _) in side
-        .faces
-        .iter()
-        .zip(&component)
-        .filter(|(_, c)| Some(**c) == largest)
-    {
-        faces.push(face.map(|v| {
-            let name = &mut local[v.index()];
-            if name.0 == u32::MAX {
-                *name = VertexId::from_index(positions.len());
-                positions.push(side.positions[v.index()]);
-                sources.push(side.sources[v.index()]);
-            }
-            *name
-        }));
-    }
-    Ok((TriangleMesh::new(positions, faces)?, sources))
+    let of_piece = side.faces.iter().zip(&component);
+    let of_piece = of_piece.filter(|(_, c)| Some(**c) == largest);
+    let faces = of_piece.map(|(face, _)| *face);
+    let (piece, vertices) = TriangleMesh::of_faces(&side.positions, faces)?;
+    let sources = vertices.iter().map(|v| side.sources[v.index()]).collect();
+    Ok((piece, sources))
 }
 
 /// The component of each face, joined over edges, and how many there are.

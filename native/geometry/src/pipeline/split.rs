@@ -6,28 +6,20 @@
 
 use super::Error;
 use crate::measure;
-use crate::mesh::{FaceId, Id, TriangleMesh, VertexId};
+use crate::mesh::TriangleMesh;
 use crate::progress::Progress;
 
 /// The components of a mesh, closed and of genus 0, in the order of their first faces.
 pub fn split(whole: &TriangleMesh, progress: &Progress<'_>) -> Result<Vec<TriangleMesh>, Error> {
     refuse_borders(whole)?;
     progress.check()?;
-    let (component, n) = whole.face_components();
+    let (_, n) = whole.face_components();
     progress.check()?;
     if n == 1 {
+        // Whole, it keeps the numbers of its vertices.
         return Ok(vec![checked(whole.clone(), [1, 1])?]);
     }
-    let mut faces: Vec<Vec<FaceId>> = vec![Vec::new(); n];
-    for face in whole.face_ids() {
-        faces[component[face.index()] as usize].push(face);
-    }
-    let mut local = vec![VertexId(u32::MAX); whole.n_vertices()];
-    let mut parts = Vec::with_capacity(n);
-    for of_part in &faces {
-        progress.check()?;
-        parts.push(take_part(whole, of_part, &mut local));
-    }
+    let parts = whole.components(progress)?;
     let numbered = parts.into_iter().enumerate();
     numbered
         .map(|(index, part)| checked(part, [index + 1, n]))
@@ -55,23 +47,6 @@ fn refuse_borders(whole: &TriangleMesh) -> Result<(), Error> {
         n_loops: loops.len(),
         n_edges: loops.iter().map(Vec::len).sum(),
     })
-}
-
-fn take_part(whole: &TriangleMesh, faces: &[FaceId], local: &mut [VertexId]) -> TriangleMesh {
-    let mut positions = Vec::new();
-    let mut vertex = |v: VertexId| {
-        let id = &mut local[v.index()];
-        if id.0 == u32::MAX {
-            *id = VertexId::from_index(positions.len());
-            positions.push(whole.position(v));
-        }
-        *id
-    };
-    let corners = faces
-        .iter()
-        .map(|&face| whole.face(face).map(&mut vertex))
-        .collect();
-    TriangleMesh::new(positions, corners).expect("a component of a mesh is a mesh")
 }
 
 /// Shares `n_faces` among the parts by area; each gets at least `least`.
@@ -108,6 +83,7 @@ fn share_by_weight(weights: &[f64], n_faces: usize, least: usize) -> Vec<usize> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::VertexId;
     use crate::shapes;
 
     fn joined(meshes: &[TriangleMesh]) -> TriangleMesh {

@@ -9,12 +9,12 @@ pub mod report;
 pub mod rotation;
 
 use orbflow_network::net::Network;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::sample::{Quality, Sample, SampleError};
 
 /// Medians over shapes, of the finest level that the network proposes.
-#[derive(Clone, Copy, PartialEq, Debug, Default, Serialize)]
+#[derive(Clone, Copy, PartialEq, Debug, Default, Serialize, Deserialize)]
 pub struct Figures {
     /// How many shapes.
     pub n_shapes: usize,

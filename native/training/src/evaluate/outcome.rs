@@ -1,11 +1,13 @@
-//! What solver, radial projection and network reach on one shape.
+//! What the network and what there is beside it reach on one shape.
+
+use std::collections::BTreeMap;
 
 use glam::DVec3;
 use orbflow_geometry::decimate::{self, simplify};
 use orbflow_geometry::embed::{OffsetPredictor, Solver};
 use orbflow_geometry::mesh::{PolygonMesh, TriangleMesh};
 use orbflow_geometry::pipeline;
-use orbflow_geometry::progress::Progress;
+use orbflow_geometry::progress::{Cancelled, Progress};
 use orbflow_network::NetworkPredictor;
 use orbflow_network::net::Network;
 use orbflow_network::weights::{ReadWeightsError, Weights};
@@ -14,19 +16,34 @@ use thiserror::Error;
 
 use super::rebuilt::Rebuilt;
 use super::rotation::angles_between;
-use crate::collect::Shape;
 use crate::parts::refined;
+use crate::prepare::WHOLE_FACES;
 use crate::sample::{Sample, SampleError};
-
-/// Faces of the whole mesh whose finished maps are compared.
-const WHOLE_FACES: usize = 16_000;
+use crate::set::{Set, SetError, Shape, Which};
+use crate::thesis::{self, Example, Moved, Thesis, ThesisError};
 
 /// What is evaluated.
-#[derive(Debug)]
 pub struct Subject {
     network: Network,
     predictor: NetworkPredictor,
     levels: Vec<usize>,
+    thesis: Option<Thesis>,
+}
+
+/// Who proposes a map.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Proposer {
+    /// The directions from the centre.
+    Radial,
+    /// The network, before any repair.
+    Network,
+    /// The solver.
+    Solver,
+    /// The network of the thesis.
+    Thesis,
+    /// What the network of the thesis is to learn.
+    ThesisTarget,
 }
 
 /// What was reached on one shape.
@@ -38,12 +55,8 @@ pub struct Outcome {
     pub category: String,
     /// How many vertices the level has that is proposed.
     pub n_vertices: usize,
-    /// The directions from the centre.
-    pub radial: Proposed,
-    /// What the network proposes, before any repair.
-    pub network: Proposed,
-    /// The solver's map of the level.
-    pub solver: Proposed,
+    /// The maps of the level.
+    pub proposals: BTreeMap<Proposer, Proposed>,
     /// Angles between the network's points and the solver's after the best rotation: the median and
     /// what 90 % stay below, in degrees.
     pub angles_deg: [f64; 2],
@@ -99,6 +112,22 @@ pub enum OutcomeError {
     /// The whole mesh cannot be embedded.
     #[error(transparent)]
     Embed(#[from] pipeline::Error),
+    /// The thesis's network cannot read the shape.
+    #[error(transparent)]
+    Thesis(#[from] ThesisError),
+    /// The set cannot be read.
+    #[error(transparent)]
+    Set(#[from] SetError),
+    /// The user asked to stop.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl OutcomeError {
+    /// Whether the user asked to stop.
+    pub fn is_cancelled(&self) -> bool {
+        matches!(self, Self::Cancelled(_) | Self::Set(SetError::Cancelled(_)))
+    }
 }
 
 impl Subject {
@@ -111,42 +140,72 @@ impl Subject {
             network: weights.network()?,
             predictor: NetworkPredictor::new(weights)?,
             levels: weights.header.sizes.levels.clone(),
+            thesis: None,
         })
+    }
+
+    /// Has the network of the thesis beside it, trained on these shapes of a set.
+    ///
+    /// # Errors
+    /// [`OutcomeError`].
+    pub fn with_thesis(
+        self,
+        (set, shapes): (&Set, &[Which<'_>]),
+        settings: thesis::Settings,
+        progress: &Progress,
+    ) -> Result<Self, OutcomeError> {
+        let make = |which: Which<'_>, shape: Shape| {
+            let sample = Sample::of(which.name(), &shape.level, &self.levels)?;
+            Ok::<_, OutcomeError>(Example::new(&sample, &shape.level)?)
+        };
+        let examples = set.read_all(shapes, make, &progress.part("load", 0.0, 0.1))?;
+        let stage = progress.part("", 0.1, 1.0);
+        let thesis = Some(Thesis::trained(&examples, settings, &stage)?);
+        Ok(Self { thesis, ..self })
+    }
+
+    /// The levels of the network, fine to coarse.
+    pub fn levels(&self) -> &[usize] {
+        &self.levels
     }
 
     /// Measures one shape; `finish` asks for the finished maps of the whole mesh too.
     ///
     /// # Errors
     /// [`OutcomeError`].
-    pub fn outcome(&self, shape: Shape, finish: bool) -> Result<Outcome, OutcomeError> {
-        let Shape {
-            name,
-            category,
-            mesh,
-        } = shape;
-        let whole = finish.then(|| self.whole(&mesh)).transpose()?;
-        let sample = Sample::new(name, mesh, &self.levels)?;
-        let proposed = |directions: &[DVec3]| {
-            let sphere: Vec<DVec3> = directions.iter().map(|d| d.normalize_or_zero()).collect();
-            let quality = sample.quality(&sphere);
-            Proposed {
-                energy: quality.energy,
-                folds_pct: quality.folds_pct,
-                rebuilt: Rebuilt::new(&sample.mesh, &sphere),
-            }
-        };
+    pub fn outcome(
+        &self,
+        which: Which<'_>,
+        shape: &Shape,
+        finish: bool,
+    ) -> Result<Outcome, OutcomeError> {
+        let whole = finish.then(|| self.whole(&shape.whole)).transpose()?;
+        let sample = Sample::of(which.name(), &shape.level, &self.levels)?;
         let network = self.network.forward(&sample.prepared.pyramid);
         let solver = sample.solver_sphere()?;
+        let angles = angles_between(&network, &solver);
+        let proposals = [
+            (Proposer::Radial, sample.mesh.positions()),
+            (Proposer::Network, &network),
+            (Proposer::Solver, &solver),
+        ];
+        let proposals = proposals.map(|(who, directions)| (who, proposed(&sample, directions)));
+        let mut proposals = BTreeMap::from(proposals);
+        if let Some(thesis) = &self.thesis {
+            let example = Example::new(&sample, &shape.level)?;
+            let vertices = sample.mesh.positions();
+            let both = [
+                (Proposer::Thesis, thesis.predicted(&example, vertices)),
+                (Proposer::ThesisTarget, thesis.target(&example, vertices)),
+            ];
+            proposals.extend(both.map(|(who, moved)| (who, measured(&sample, &moved))));
+        }
         Ok(Outcome {
-            category,
+            category: which.source.category.clone(),
             n_vertices: sample.mesh.n_vertices(),
-            radial: proposed(sample.mesh.positions()),
-            network: proposed(&network),
-            solver: proposed(&solver),
-            angles_deg: {
-                let angles = angles_between(&network, &solver);
-                [0.5, 0.9].map(|share| angles[(share * (angles.len() - 1) as f64) as usize])
-            },
+            proposals,
+            angles_deg: [0.5, 0.9]
+                .map(|share| angles[(share * (angles.len() - 1) as f64) as usize]),
             whole,
             name: sample.name,
         })
@@ -174,6 +233,27 @@ impl Subject {
             network,
             gave_up,
         })
+    }
+}
+
+/// How good directions of any length are.
+fn proposed(sample: &Sample, directions: &[DVec3]) -> Proposed {
+    let sphere: Vec<DVec3> = directions.iter().map(|d| d.normalize_or_zero()).collect();
+    let quality = sample.quality(&sphere);
+    Proposed {
+        energy: quality.energy,
+        folds_pct: quality.folds_pct,
+        rebuilt: Rebuilt::new(&sample.mesh, &sphere),
+    }
+}
+
+/// How good the sphere of the thesis is: itself as a surface, and what it says of where the vertices lie.
+fn measured(sample: &Sample, moved: &Moved) -> Proposed {
+    let quality = sample.quality(&moved.directions);
+    Proposed {
+        energy: quality.energy,
+        folds_pct: quality.folds_pct,
+        rebuilt: Rebuilt::of(&moved.surface, &sample.mesh),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 use orbflow_geometry::measure::area_vector;
-use orbflow_geometry::mesh::{Id, TriangleMesh};
+use orbflow_geometry::mesh::{Id, TriangleMesh, bounds};
 use orbflow_geometry::nearest::Bvh;
 use orbflow_geometry::random::Random;
 use orbflow_geometry::sphere::icosphere;
@@ -41,14 +41,17 @@ impl Rebuilt {
             .faces()
             .map(|f| [f[0], f[1], f[2]].map(|v| carried[v.index()]))
             .collect();
+        Self::of(&rebuilt, mesh)
+    }
+
+    /// Compares what was made of a mesh with it.
+    pub fn of(rebuilt: &[[DVec3; 3]], mesh: &TriangleMesh) -> Self {
         let shape: Vec<[DVec3; 3]> = mesh.face_ids().map(|f| mesh.triangle(f)).collect();
-        let positions = mesh.positions();
-        let low = positions.iter().fold(DVec3::INFINITY, |a, &b| a.min(b));
-        let high = positions.iter().fold(DVec3::NEG_INFINITY, |a, &b| a.max(b));
+        let [low, high] = bounds(mesh.positions());
         let reaches = REACHES.map(|share| share * low.distance(high));
         let (precision_pct, recall_pct) = (
-            near_pct(&rebuilt, &shape, reaches),
-            near_pct(&shape, &rebuilt, reaches),
+            near_pct(rebuilt, &shape, reaches),
+            near_pct(&shape, rebuilt, reaches),
         );
         let f1 = |i: usize| {
             let (p, r): (f64, f64) = (precision_pct[i], recall_pct[i]);
@@ -96,7 +99,7 @@ fn carry(p: DVec3, mesh: &TriangleMesh, weights_of_faces: &[Option<DMat3>]) -> D
 /// What share of one surface is within each reach of another, in percent.
 fn near_pct(of: &[[DVec3; 3]], other: &[[DVec3; 3]], reaches: [f64; 2]) -> [f64; 2] {
     let tree = Bvh::new(other);
-    let distances: Vec<f64> = samples(of)
+    let distances: Vec<f64> = samples(of, N_SAMPLES)
         .into_iter()
         .map(|p| tree.closest(p).position.distance(p))
         .collect();
@@ -107,7 +110,7 @@ fn near_pct(of: &[[DVec3; 3]], other: &[[DVec3; 3]], reaches: [f64; 2]) -> [f64;
 }
 
 /// Points even by area, the same every time.
-fn samples(triangles: &[[DVec3; 3]]) -> Vec<DVec3> {
+pub fn samples(triangles: &[[DVec3; 3]], n_samples: usize) -> Vec<DVec3> {
     let mut random = Random::new(7);
     let mut sum = 0.0;
     let ends = triangles.iter().map(|&t| {
@@ -117,12 +120,12 @@ fn samples(triangles: &[[DVec3; 3]]) -> Vec<DVec3> {
     let ends: Vec<f64> = ends.collect();
     let total = ends.last().copied().unwrap_or(0.0);
     let point = |i: usize| {
-        let at = (i as f64 + random.unit()) / N_SAMPLES as f64 * total;
+        let at = (i as f64 + random.unit()) / n_samples as f64 * total;
         let [a, b, c] = triangles[ends.partition_point(|&end| end <= at).min(ends.len() - 1)];
         let (u, v) = (random.unit().sqrt(), random.unit());
         a * (1.0 - u) + (b * (1.0 - v) + c * v) * u
     };
-    (0..N_SAMPLES).map(point).collect()
+    (0..n_samples).map(point).collect()
 }
 
 #[cfg(test)]

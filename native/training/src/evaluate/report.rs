@@ -1,24 +1,50 @@
 //! Medians over outcomes: by side and by category.
 
-use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::collections::{BTreeMap, BTreeSet};
 
-use orbflow_geometry::progress::{Cancelled, Progress};
+use orbflow_geometry::progress::Progress;
 use orbflow_network::weights::Header;
+use rayon::prelude::*;
 use serde::Serialize;
 
-use super::outcome::{Cost, Outcome, Proposed, Subject, Whole};
-use crate::collect::{Gathered, Item, N_AT_ONCE, Side, gather};
+use super::outcome::{Cost, Outcome, Proposed, Proposer, Subject, Whole};
+use crate::set::{Set, SetError, Split, Which};
+
+/// Shapes that are measured at once, where no time is.
+const N_AT_ONCE: usize = 32;
+
+/// What training knew of a shape.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// It was trained on.
+    Train,
+    /// It was held back.
+    Test,
+    /// It is of a set that training was not given.
+    Other,
+}
+
+/// A shape that is to be measured.
+#[derive(Clone, Copy, Debug)]
+pub struct Asked<'a> {
+    /// On which side it is.
+    pub side: Side,
+    /// Its set.
+    pub set: &'a Set,
+    /// Which shape of the set.
+    pub which: Which<'a>,
+}
 
 /// What was measured.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// The header of the weights.
     pub weights: Header,
-    /// The shapes trained on, those held back, those of other folders.
+    /// The shapes trained on, those held back, those of other sets.
     pub sides: BTreeMap<Side, SideReport>,
-    /// Files without a usable part, and why.
-    pub left_out: Vec<(PathBuf, String)>,
+    /// Shapes that could not be measured, and why.
+    pub left_out: Vec<(String, String)>,
 }
 
 /// What was measured on one side.
@@ -33,16 +59,12 @@ pub struct SideReport {
 }
 
 /// Medians over some shapes.
-#[derive(Clone, Copy, PartialEq, Debug, Serialize)]
+#[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct Summary {
     /// How many shapes.
     pub n_shapes: usize,
-    /// The directions from the centre.
-    pub radial: ProposedSummary,
-    /// The network's proposals, before any repair.
-    pub network: ProposedSummary,
-    /// The solver's maps of the level.
-    pub solver: ProposedSummary,
+    /// The maps of the level, by who proposes them.
+    pub proposals: BTreeMap<Proposer, ProposedSummary>,
     /// Of the shapes, in how many percent the network's proposal is worse than the radial one.
     pub worse_than_radial_pct: f64,
     /// Medians of the angles to the solver's points: the median and what 90 % stay below.
@@ -87,24 +109,63 @@ pub struct WholeSummary {
     pub gave_up_pct: f64,
 }
 
-/// Evaluates a network on the shapes of some items; the maps of shapes that it was not trained on
-/// are finished too where `finish` says so.
+impl<'a> Asked<'a> {
+    /// The shapes of a set that training was given.
+    pub fn of(set: &'a Set) -> impl Iterator<Item = Self> {
+        set.shapes().into_iter().map(move |which| Self {
+            side: match which.source.split {
+                Split::Train => Side::Train,
+                Split::Test => Side::Test,
+            },
+            set,
+            which,
+        })
+    }
+
+    /// The shapes of a set that training was not given.
+    pub fn of_other(set: &'a Set) -> impl Iterator<Item = Self> {
+        Self::of(set).map(|asked| Self {
+            side: Side::Other,
+            ..asked
+        })
+    }
+
+    fn measure(&self, subject: &Subject, finish: bool) -> Result<Measured, SetError> {
+        let shape = self.set.read(self.which)?;
+        let finish = finish && self.side != Side::Train;
+        let outcome = subject.outcome(self.which, &shape, finish);
+        Ok(outcome.map_err(|error| (self.which.name(), error.to_string())))
+    }
+}
+
+/// What was reached on a shape, or its name and why it could not be measured.
+type Measured = Result<Outcome, (String, String)>;
+
+/// Evaluates a network on shapes; the maps of shapes that it was not trained on are finished too where
+/// `finish` says so.
 ///
 /// # Errors
-/// [`Cancelled`]; a file whose shapes cannot be used is left out and named.
+/// [`SetError`]; a shape that cannot be measured is left out and named.
 pub fn report(
     (weights, subject): (&Header, &Subject),
-    items: &[Item],
+    shapes: &[Asked<'_>],
     finish: bool,
     progress: &Progress,
-) -> Result<Report, Cancelled> {
-    let outcome = |side, shape| subject.outcome(shape, finish && side != Side::Training);
+) -> Result<Report, SetError> {
     // One after the other where processor time is measured: it is that of the whole process.
     let n_at_once = if finish { 1 } else { N_AT_ONCE };
-    let Gathered { all, left_out } = gather(items, outcome, n_at_once, progress)?;
     let mut sides: BTreeMap<Side, Vec<Outcome>> = BTreeMap::new();
-    for (side, outcome) in all {
-        sides.entry(side).or_default().push(outcome);
+    let mut left_out = Vec::new();
+    for (i, chunk) in shapes.chunks(n_at_once).enumerate() {
+        progress.at((n_at_once * i) as f64 / shapes.len() as f64)?;
+        let measured = chunk.par_iter().map(|asked| asked.measure(subject, finish));
+        let measured: Vec<_> = measured.collect::<Result<_, _>>()?;
+        for (asked, measured) in chunk.iter().zip(measured) {
+            match measured {
+                Ok(outcome) => sides.entry(asked.side).or_default().push(outcome),
+                Err(reason) => left_out.push(reason),
+            }
+        }
     }
     let sides = sides.into_iter();
     Ok(Report {
@@ -116,19 +177,25 @@ pub fn report(
     })
 }
 
-/// At most `n` items of each side, evenly taken from all of them.
-pub fn thinned(items: &[Item], n: usize) -> Vec<Item> {
-    let count = |side: Side| items.iter().filter(|item| item.side == side).count();
-    let counts = [Side::Training, Side::HeldOut, Side::Other].map(|side| (side, count(side)));
-    let counts = BTreeMap::from(counts);
+/// At most `n` shapes of each side, evenly taken from all of them.
+pub fn thinned<'a>(shapes: &[Asked<'a>], n: usize) -> Vec<Asked<'a>> {
+    let mut counts: BTreeMap<Side, usize> = BTreeMap::new();
+    for shape in shapes {
+        *counts.entry(shape.side).or_default() += 1;
+    }
     let mut seen: BTreeMap<Side, usize> = BTreeMap::new();
-    let is_taken = |item: &&Item| {
-        let (total, i) = (counts[&item.side], seen.entry(item.side).or_default());
+    let is_taken = |shape: &&Asked<'_>| {
+        let i = seen.entry(shape.side).or_default();
         *i += 1;
-        // Where the number of items taken grows by one.
-        *i * n / total.max(n) > (*i - 1) * n / total.max(n)
+        is_one_of(*i - 1, counts[&shape.side], n)
     };
-    items.iter().filter(is_taken).cloned().collect()
+    shapes.iter().filter(is_taken).copied().collect()
+}
+
+/// Whether the `i`-th of `total` is among `n` that are taken evenly: where their number grows by one.
+fn is_one_of(i: usize, total: usize, n: usize) -> bool {
+    let most = total.max(n).max(1);
+    (i + 1) * n / most > i * n / most
 }
 
 impl SideReport {
@@ -151,14 +218,17 @@ impl SideReport {
 
 impl Summary {
     fn new(shapes: &[&Outcome]) -> Self {
-        let proposed = |which: fn(&Outcome) -> &Proposed| ProposedSummary::new(shapes, which);
+        let who = shapes.iter().flat_map(|outcome| outcome.proposals.keys());
+        let who: BTreeSet<Proposer> = who.copied().collect();
         Self {
             n_shapes: shapes.len(),
-            radial: proposed(|outcome| &outcome.radial),
-            network: proposed(|outcome| &outcome.network),
-            solver: proposed(|outcome| &outcome.solver),
+            proposals: who
+                .into_iter()
+                .map(|who| (who, ProposedSummary::new(shapes, who)))
+                .collect(),
             worse_than_radial_pct: share_pct(shapes, |outcome| {
-                outcome.network.energy > outcome.radial.energy
+                let energy = |who: Proposer| outcome.proposals[&who].energy;
+                energy(Proposer::Network) > energy(Proposer::Radial)
             }),
             angles_deg: [0, 1].map(|i| median(shapes.iter().map(|outcome| outcome.angles_deg[i]))),
             whole: WholeSummary::new(shapes),
@@ -167,13 +237,19 @@ impl Summary {
 }
 
 impl ProposedSummary {
-    fn new(shapes: &[&Outcome], which: fn(&Outcome) -> &Proposed) -> Self {
-        let figures = |figure: &dyn Fn(&Proposed) -> f64| {
-            median(shapes.iter().map(|outcome| figure(which(outcome))))
+    fn new(shapes: &[&Outcome], who: Proposer) -> Self {
+        let proposed = || {
+            shapes
+                .iter()
+                .filter_map(|outcome| outcome.proposals.get(&who))
         };
+        let figures = |figure: &dyn Fn(&Proposed) -> f64| median(proposed().map(figure));
         let ratios = || {
-            let ratio = |outcome: &&Outcome| which(outcome).energy / outcome.solver.energy;
-            shapes.iter().map(ratio)
+            let ratio = |outcome: &&Outcome| {
+                let energy = outcome.proposals.get(&who)?.energy;
+                Some(energy / outcome.proposals[&Proposer::Solver].energy)
+            };
+            shapes.iter().filter_map(ratio)
         };
         let pair = |figure: fn(&Proposed) -> [f64; 2]| [0, 1].map(|i| figures(&|p| figure(p)[i]));
         Self {
@@ -235,28 +311,15 @@ fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::collect::{Sources, items};
 
     #[test]
-    fn every_side_is_thinned_evenly() {
-        let sources = Sources {
-            n_shapes: 100,
-            n_held_out: 7,
-            folders: Vec::new(),
-        };
-        let all = items(&sources).expect("there is nothing to read");
-        for most in [0, 1, 3, 10, 200] {
-            let few = thinned(&all, most);
-            let of = |side: Side| few.iter().filter(|item| item.side == side).count();
-            assert_eq!(of(Side::Training), most.min(100));
-            assert_eq!(of(Side::HeldOut), most.min(7));
+    fn shapes_are_taken_evenly() {
+        for (total, most) in [(100, 0), (100, 1), (100, 10), (7, 3), (7, 10), (0, 4)] {
+            let n = (0..total).filter(|&i| is_one_of(i, total, most)).count();
+            assert_eq!(n, most.min(total));
         }
-        let ten = thinned(&all, 10);
-        assert_eq!(
-            [&ten[0], &ten[1], &ten[9]],
-            [&all[9], &all[19], &all[99]],
-            "one of every ten"
-        );
+        let ten: Vec<usize> = (0..100).filter(|&i| is_one_of(i, 100, 10)).collect();
+        assert_eq!(ten, [9, 19, 29, 39, 49, 59, 69, 79, 89, 99]);
     }
 
     #[test]

@@ -7,7 +7,7 @@ use glam::DVec3;
 use orbflow_geometry::mesh::TriangleMesh;
 use orbflow_geometry::random::Random;
 
-use crate::parts::closed_parts;
+use crate::parts::split;
 pub use implicit::Solid;
 pub use march::{Surface, march};
 
@@ -28,7 +28,7 @@ pub fn shape(seed: u64) -> TriangleMesh {
         let Ok(mesh) = TriangleMesh::new(positions, faces) else {
             continue;
         };
-        let parts = closed_parts(&mesh);
+        let parts = split(&mesh).usable;
         let largest = parts.into_iter().max_by_key(TriangleMesh::n_faces);
         if let Some(part) = largest.filter(|part| part.n_faces() >= 1_000) {
             return part;

@@ -1,6 +1,7 @@
 //! Oriented manifold triangle meshes, with or without border.
 
 mod build;
+mod submesh;
 
 use glam::DVec3;
 

@@ -1,0 +1,331 @@
+//! What a set is made from: files below folders and in zip files, and seeds.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use orbflow_geometry::mesh::io::Format;
+use orbflow_geometry::mesh::{PolygonMesh, TriangleMesh, io as mesh_io};
+use thiserror::Error;
+
+use crate::licence::Licences;
+use crate::set::{Split, fnv};
+use crate::shapes::shape;
+use crate::zips::Zip;
+
+/// Of a hundred files or seeds, how many are held back, with all their parts.
+const HELD_BACK_PCT: usize = 15;
+/// Seeds of shapes that are held back start so much later; training never comes so far.
+const FIRST_HELD_BACK: u64 = 1 << 40;
+
+/// What one or a few shapes are made from.
+#[derive(Clone)]
+pub struct Item {
+    /// The file below what was given, or the seed.
+    pub name: String,
+    /// The folder that it is in, or "made".
+    pub category: String,
+    /// What its folder says of its licence.
+    pub licence: String,
+    /// On which side it is.
+    pub split: Split,
+    origin: Origin,
+}
+
+#[derive(Clone)]
+enum Origin {
+    Seed(u64),
+    File(Arc<Tree>, String),
+    /// It cannot be opened.
+    Broken(String),
+}
+
+/// Why there are no sources.
+#[derive(Debug, Error)]
+pub enum SourceError {
+    /// A folder or file cannot be read.
+    #[error("cannot read {path}: {cause}")]
+    Read {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        cause: io::Error,
+    },
+    /// There is neither a file nor a seed.
+    #[error("there is nothing to prepare: no mesh in the {n_given} places given, no made shapes")]
+    Nothing {
+        /// How many places there were to look.
+        n_given: usize,
+    },
+    /// Two files have one name.
+    #[error("two sources are called {name}; give the folder that both are in")]
+    Twice {
+        /// The name.
+        name: String,
+    },
+}
+
+/// Files below one folder or in one zip file.
+pub struct Tree {
+    root: Root,
+    /// What its files are called from outside; empty for a single file.
+    name: String,
+    /// All files, by their path from the root with `/` between.
+    files: Vec<String>,
+}
+
+enum Root {
+    Folder(PathBuf),
+    Zip(Zip),
+}
+
+/// The seeds and the files of folders, zip files and meshes: seeds first, then files in the order of
+/// their paths. Files of unknown licence are under `licence`.
+///
+/// # Errors
+/// [`SourceError`]; a zip file that cannot be read is left out and named.
+pub fn items(
+    given: &[PathBuf],
+    (n_procedural, seed): (usize, u64),
+    licence: Option<&str>,
+) -> Result<Vec<Item>, SourceError> {
+    let mut items = seeds(n_procedural, seed);
+    for path in given {
+        let name = path.canonicalize().unwrap_or_else(|_| path.clone());
+        let name = name.file_name().unwrap_or_default();
+        add(path, &name.to_string_lossy(), licence, &mut items)?;
+    }
+    if items.is_empty() {
+        let n_given = given.len();
+        return Err(SourceError::Nothing { n_given });
+    }
+    let mut names: Vec<&str> = items.iter().map(|item| item.name.as_str()).collect();
+    names.sort_unstable();
+    match names.windows(2).find(|pair| pair[0] == pair[1]) {
+        None => Ok(items),
+        Some(pair) => {
+            let name = pair[0].to_owned();
+            Err(SourceError::Twice { name })
+        }
+    }
+}
+
+fn seeds(n: usize, first: u64) -> Vec<Item> {
+    let n_held_back = n * HELD_BACK_PCT / 100;
+    let made = |split: Split, first: u64, n: usize| {
+        let seeds = (0..n as u64).map(move |i| first.wrapping_add(i));
+        seeds.map(move |seed| Item {
+            name: format!("shape {seed}"),
+            category: "made".to_owned(),
+            licence: "made, needs none".to_owned(),
+            split,
+            origin: Origin::Seed(seed),
+        })
+    };
+    let held_back = made(
+        Split::Test,
+        first.wrapping_add(FIRST_HELD_BACK),
+        n_held_back,
+    );
+    made(Split::Train, first, n - n_held_back)
+        .chain(held_back)
+        .collect()
+}
+
+/// Adds the meshes of one place, and of the zip files in it.
+fn add(
+    path: &Path,
+    name: &str,
+    licence: Option<&str>,
+    items: &mut Vec<Item>,
+) -> Result<(), SourceError> {
+    let failed = |cause| SourceError::Read {
+        path: path.to_owned(),
+        cause,
+    };
+    if is_zip(path) && path.is_file() {
+        match Tree::of_zip(path, name) {
+            Ok(tree) => add_tree(tree, licence, items)?,
+            Err(reason) => items.push(Item {
+                name: name.to_owned(),
+                category: "zip".to_owned(),
+                licence: licence.unwrap_or("unknown").to_owned(),
+                split: split_of(name),
+                origin: Origin::Broken(reason),
+            }),
+        }
+        return Ok(());
+    }
+    let tree = if path.is_dir() {
+        Tree::of_folder(path, name)
+    } else {
+        fs::metadata(path).map(|_| Tree::of_file(path, name))
+    };
+    add_tree(tree.map_err(failed)?, licence, items)
+}
+
+fn add_tree(tree: Tree, licence: Option<&str>, items: &mut Vec<Item>) -> Result<(), SourceError> {
+    let licences = Licences::of(&tree);
+    let tree = Arc::new(tree);
+    for file in &tree.files {
+        let name = tree.name_of(file);
+        if let (Root::Folder(root), true) = (&tree.root, is_zip(Path::new(file))) {
+            add(&root.join(file), &name, licence, items)?;
+        } else if Format::from_path(Path::new(file)).is_some() {
+            let folder = Path::new(&name).parent().and_then(Path::file_name);
+            items.push(Item {
+                category: folder.unwrap_or_default().to_string_lossy().into_owned(),
+                licence: match (licences.licence_of(file), licence) {
+                    (Some(said), _) => said,
+                    (None, given) => given.unwrap_or("unknown").to_owned(),
+                },
+                split: split_of(file),
+                origin: Origin::File(tree.clone(), file.clone()),
+                name,
+            });
+        }
+    }
+    Ok(())
+}
+
+fn is_zip(path: &Path) -> bool {
+    let ending = path.extension();
+    ending.is_some_and(|ending| ending.eq_ignore_ascii_case("zip"))
+}
+
+/// By the name without its number, so that more files do not move a file to the other side and
+/// that the parts and variants of one model (`sofa2_01`, `sofa2_02`, `sofa_01`) are on one side.
+fn split_of(file: &str) -> Split {
+    let stem = Path::new(file).file_stem().unwrap_or_default();
+    let stem = stem.to_string_lossy();
+    let model = stem.trim_end_matches(|c: char| c.is_ascii_digit() || c == '_');
+    if (fnv(model.as_bytes()) >> 32) % 100 < HELD_BACK_PCT as u64 {
+        Split::Test
+    } else {
+        Split::Train
+    }
+}
+
+/// A mesh as it was found: made shapes are closed, files may be anything.
+pub enum Found {
+    /// A closed mesh of genus 0.
+    Made(TriangleMesh),
+    /// The polygons of a file.
+    File(PolygonMesh),
+}
+
+impl Item {
+    /// Makes or reads the mesh.
+    ///
+    /// # Errors
+    /// Why it cannot be read, in words.
+    pub fn read(&self) -> Result<Found, String> {
+        match &self.origin {
+            Origin::Seed(seed) => Ok(Found::Made(shape(*seed))),
+            Origin::Broken(reason) => Err(reason.clone()),
+            Origin::File(tree, file) => {
+                let format = Format::from_path(Path::new(file)).ok_or("not a mesh")?;
+                let read = mesh_io::read(&tree.read(file)?, format);
+                Ok(Found::File(read.map_err(|e| e.to_string())?.mesh))
+            }
+        }
+    }
+}
+
+impl Tree {
+    fn of_file(path: &Path, name: &str) -> Self {
+        Self {
+            root: Root::Folder(path.parent().unwrap_or(Path::new("")).to_owned()),
+            name: String::new(),
+            files: vec![name.to_owned()],
+        }
+    }
+
+    fn of_folder(root: &Path, name: &str) -> io::Result<Self> {
+        let mut files = Vec::new();
+        list(root, "", &mut files)?;
+        Ok(Self {
+            root: Root::Folder(root.to_owned()),
+            name: name.to_owned(),
+            files,
+        })
+    }
+
+    fn of_zip(path: &Path, name: &str) -> Result<Self, String> {
+        let zip = Zip::open(path)?;
+        Ok(Self {
+            files: zip.names().cloned().collect(),
+            root: Root::Zip(zip),
+            name: name.to_owned(),
+        })
+    }
+
+    /// What a file of it is called from outside.
+    fn name_of(&self, file: &str) -> String {
+        if self.name.is_empty() {
+            return file.to_owned();
+        }
+        format!("{}/{file}", self.name)
+    }
+
+    /// All files, by their path from the root with `/` between.
+    pub fn files(&self) -> &[String] {
+        &self.files
+    }
+
+    /// The bytes of a file.
+    ///
+    /// # Errors
+    /// Why they cannot be read, in words.
+    pub fn read(&self, file: &str) -> Result<Vec<u8>, String> {
+        match &self.root {
+            Root::Folder(root) => fs::read(root.join(file)).map_err(|e| e.to_string()),
+            Root::Zip(zip) => zip.read(file),
+        }
+    }
+}
+
+/// The files of a folder and its subfolders, in the order of their names; links to folders are not
+/// followed, they may lead back.
+fn list(folder: &Path, below: &str, files: &mut Vec<String>) -> io::Result<()> {
+    let mut entries: Vec<fs::DirEntry> = fs::read_dir(folder)?.collect::<io::Result<_>>()?;
+    entries.sort_by_key(fs::DirEntry::path);
+    for entry in entries {
+        let name = format!("{below}{}", entry.file_name().to_string_lossy());
+        if entry.file_type()?.is_dir() {
+            list(&entry.path(), &format!("{name}/"), files)?;
+        } else if entry.path().is_file() {
+            files.push(name);
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_stays_on_its_side() {
+        let is_test = |name: &str| split_of(name) == Split::Test;
+        let n = (0..1000)
+            .filter(|i| is_test(&format!("a/{i}.model.obj")))
+            .count();
+        assert!((100..200).contains(&n), "{n}");
+        for i in 0..40 {
+            let sides = ["a/{i}sofa_01.obj", "b/c/{i}sofa_12.off", "{i}sofa2_03.obj"];
+            let sides = sides.map(|name| is_test(&name.replace("{i}", &i.to_string())));
+            assert!(sides.iter().all(|&side| side == sides[0]), "{i}");
+        }
+    }
+
+    #[test]
+    fn of_a_hundred_seeds_fifteen_are_held_back() {
+        let items = seeds(100, 7);
+        let test: Vec<_> = items.iter().filter(|i| i.split == Split::Test).collect();
+        assert_eq!(test.len(), 15);
+        assert_eq!(items[0].name, "shape 7");
+        assert_eq!(test[0].name, format!("shape {}", (1u64 << 40) + 7));
+    }
+}

@@ -1,0 +1,197 @@
+//! Sets: what goes into them, and that neither threads nor cuts change a byte.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use flate2::Compression;
+use flate2::write::DeflateEncoder;
+use orbflow_geometry::mesh::io::{Format, MeshFile, write};
+use orbflow_geometry::mesh::{PolygonMesh, TriangleMesh};
+use orbflow_geometry::progress::{CancelToken, Progress};
+use orbflow_training::prepare::{PrepareError, Settings, prepare};
+use orbflow_training::set::{Set, Source, Split};
+use orbflow_training::shapes::shape;
+use rawzip::path::EntryPath;
+use rawzip::{CompressionMethod, ZipArchiveWriter};
+use tempfile::TempDir;
+
+const OPEN: &[u8] = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\n";
+
+fn obj(mesh: &TriangleMesh) -> Vec<u8> {
+    let faces: Vec<_> = mesh.faces().iter().map(|f| f.map(|v| v.0)).collect();
+    let mesh = PolygonMesh::from_faces(mesh.positions().to_vec(), &faces);
+    let file = MeshFile::from(mesh.expect("triangles are polygons"));
+    let mut bytes = Vec::new();
+    write(&file, Format::Obj, &mut bytes).expect("memory can be written");
+    bytes
+}
+
+/// A folder with meshes good and bad, a table, and a zip file with a licence of its own.
+fn models() -> (TempDir, PathBuf) {
+    let folder = TempDir::new().expect("a temporary folder can be made");
+    let models = folder.path().join("models");
+    fs::create_dir_all(models.join("animals")).expect("the folder can be written");
+    let put = |name: &str, bytes: &[u8]| {
+        fs::write(models.join(name), bytes).expect("the folder can be written");
+    };
+    put("animals/cat.obj", &obj(&shape(5)));
+    put("open.obj", OPEN);
+    put("broken.ply", b"ply\nnonsense");
+    put("broken.zip", b"PK nonsense");
+    put("notes.txt", b"not a mesh");
+    put("manifest.csv", b"file,licence\nanimals/cat.obj,CC-BY-4.0\n");
+    let files = [
+        ("License.txt", b"These models are CC0.".to_vec()),
+        ("fish/fish_01.obj", obj(&shape(6))),
+        ("../escape.obj", OPEN.to_vec()),
+    ];
+    put("pack.zip", &zip(&files).expect("memory can be written"));
+    (folder, models)
+}
+
+fn zip(files: &[(&str, Vec<u8>)]) -> Result<Vec<u8>, rawzip::Error> {
+    let mut bytes = Vec::new();
+    let mut archive = ZipArchiveWriter::new(&mut bytes);
+    for (name, text) in files {
+        // As it stands, so that a name may be hostile.
+        let entry = archive.new_file(EntryPath::verbatim(name.as_bytes()));
+        let deflated = entry.compression_method(CompressionMethod::DEFLATE);
+        let (mut entry, config) = deflated.start()?;
+        let mut out = config.wrap(DeflateEncoder::new(&mut entry, Compression::default()));
+        out.write_all(text)?;
+        let (encoder, descriptor) = out.finish()?;
+        encoder.finish()?;
+        entry.finish(descriptor)?;
+    }
+    archive.finish()?;
+    Ok(bytes)
+}
+
+fn settings() -> Settings {
+    Settings {
+        n_faces: 300,
+        n_procedural: 7,
+        ..Settings::default()
+    }
+}
+
+fn prepared(models: &Path, output: &Path) -> Set {
+    let given = [models.to_owned()];
+    let set = prepare(&given, &settings(), output, &Progress::none());
+    set.expect("there is something to prepare")
+}
+
+#[test]
+fn folders_and_zip_files_become_a_set_that_says_what_is_in_it() {
+    let (folder, models) = models();
+    let set = prepared(&models, &folder.path().join("a.set"));
+    let manifest = set.manifest();
+    assert!(manifest.is_complete);
+    let source = |name: &str| -> &Source {
+        let found = manifest.sources.iter().find(|source| source.name == name);
+        found.unwrap_or_else(|| panic!("no {name} in {manifest:?}"))
+    };
+    for (name, category, licence, left_out) in [
+        ("models/animals/cat.obj", "animals", "CC-BY-4.0", ""),
+        ("models/pack.zip/fish/fish_01.obj", "fish", "CC0-1.0", ""),
+        (
+            "models/open.obj",
+            "models",
+            "unknown",
+            "1 part with a border",
+        ),
+        ("models/broken.ply", "models", "unknown", "line 2"),
+        (
+            "models/broken.zip",
+            "zip",
+            "unknown",
+            "Missing end of central directory",
+        ),
+        (
+            "models/pack.zip/../escape.obj",
+            "",
+            "CC0-1.0",
+            "1 part with a border",
+        ),
+        ("shape 0", "made", "made, needs none", ""),
+    ] {
+        let source = source(name);
+        assert_eq!(
+            (&*source.category, &*source.licence),
+            (category, licence),
+            "{name}"
+        );
+        assert_eq!(
+            source.parts.len(),
+            usize::from(left_out.is_empty()),
+            "{name}"
+        );
+        let reasons = source.left_out.join("; ");
+        assert!(reasons.contains(left_out), "{name}: {reasons}");
+    }
+    assert_eq!(manifest.sources.len(), 7 + 6);
+    let test = set.shapes_of(Split::Test);
+    assert!(
+        test.iter()
+            .any(|which| which.source.name == format!("shape {}", 1u64 << 40))
+    );
+    let cat = set
+        .shapes()
+        .into_iter()
+        .find(|w| w.source.name.ends_with("cat.obj"));
+    let read = set.read(cat.unwrap()).unwrap();
+    assert_eq!(read.whole.n_faces(), shape(5).n_faces().min(16_000));
+    assert_eq!(read.level.mesh().n_faces(), 300);
+}
+
+#[test]
+fn neither_threads_nor_cuts_change_a_byte() {
+    let (folder, models) = models();
+    let path = |name: &str| folder.path().join(name);
+    for (threads, name) in [(1, "one.set"), (2, "two.set")] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.unwrap()
+            .install(|| drop(prepared(&models, &path(name))));
+    }
+    let one = fs::read(path("one.set")).unwrap();
+    assert!(one == fs::read(path("two.set")).unwrap());
+
+    fs::write(path("cut.set"), &one[..one.len() / 2]).unwrap();
+    drop(prepared(&models, &path("cut.set")));
+    assert!(one == fs::read(path("cut.set")).unwrap());
+}
+
+#[test]
+fn a_cancelled_run_says_how_far_it_came() {
+    let (folder, models) = models();
+    let token = CancelToken::new();
+    token.cancel();
+    let output = folder.path().join("a.set");
+    let cancelled = prepare(&[models], &settings(), &output, &Progress::silent(token));
+    assert!(matches!(
+        cancelled,
+        Err(PrepareError::Cancelled {
+            n_done: 0,
+            n_sources: 13
+        })
+    ));
+    assert!(!Set::open(&output).unwrap().manifest().is_complete);
+}
+
+#[test]
+fn nothing_to_prepare_is_an_error() {
+    let folder = TempDir::new().unwrap();
+    let output = folder.path().join("a.set");
+    let none = Settings {
+        n_procedural: 0,
+        ..settings()
+    };
+    let given = [folder.path().to_owned()];
+    let error = prepare(&given, &none, &output, &Progress::none()).unwrap_err();
+    assert!(error.to_string().contains("nothing to prepare"), "{error}");
+    let missing = [folder.path().join("missing")];
+    let error = prepare(&missing, &none, &output, &Progress::none()).unwrap_err();
+    assert!(error.to_string().contains("missing"), "{error}");
+    assert!(!output.exists());
+}
