@@ -68,6 +68,10 @@ pub struct Remesh {
     /// Edges sharper than this get edges of the result along them; 180 for none
     #[arg(long, value_name = "DEGREES", default_value_t = Settings::default().sharp_angle, value_parser = degrees)]
     pub sharp_angle: f64,
+    /// Numbers from 0 to 1, one for each vertex of IN, as text: where they are 1, edges of flowing
+    /// quads are half as long as where they are 0
+    #[arg(long, value_name = "FILE")]
+    pub density: Option<PathBuf>,
     /// Make quads that are their own image across an axis, in the plane through the origin or the
     /// middle of the mesh; auto finds one in which the mesh is symmetric
     #[arg(long, default_value = "off", value_parser = mirror())]
@@ -214,6 +218,7 @@ impl Remesh {
             seed: self.run.seed,
             threads: self.run.threads,
             score: self.report.as_ref().map(|_| score::Settings::default()),
+            ..Settings::default()
         }
     }
 

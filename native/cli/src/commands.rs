@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::arguments::{Command, Decimate, Embed, Remesh, Score, output_format};
 use crate::bar::with_bar;
 use crate::error::Error;
-use crate::inputs::read;
+use crate::inputs::{numbers, read};
 use crate::interrupt::Interrupt;
 use crate::outputs::Outputs;
 use crate::place::Place;
@@ -43,8 +43,10 @@ fn remesh(arguments: &Remesh, interrupt: &Interrupt) -> Result<(), Error> {
     let places = [Some(&files.output), report.as_ref(), sphere.as_ref()];
     let mut outputs = Outputs::new(places.into_iter().flatten())?;
     let (settings, predictor) = (arguments.settings(), run.build()?);
+    let density = arguments.density.as_deref().map(numbers).transpose()?;
     let input = Input {
         materials: materials(&file),
+        density: density.as_deref(),
         ..Input::new(&file.mesh)
     };
     let remeshed = with_bar(token, |progress| {
