@@ -80,9 +80,7 @@ def _marked(mesh: bpy.types.Mesh, marks: Iterable[str]) -> Int | None:
     return ends_of(mesh)[found]
 
 
-def write(
-    arrays: MeshArrays | orbflow_native.Remeshed, like: bpy.types.Mesh
-) -> bpy.types.Mesh:
+def write(arrays: MeshArrays | orbflow_native.Remeshed, like: bpy.types.Mesh) -> bpy.types.Mesh:
     """Makes a new mesh of arrays, with the materials, shading and custom properties of `like`."""
     mesh = bpy.data.meshes.new(like.name)
     mesh.vertices.add(len(arrays.positions))

@@ -14,7 +14,6 @@ from typing import Any
 import bpy
 import gpu
 import numpy as np
-from bpy.app.handlers import persistent
 from gpu_extras.batch import batch_for_shader
 from mathutils import Matrix
 from numpy.typing import NDArray
@@ -103,7 +102,7 @@ def _changes() -> Iterator[list[Any]]:
     yield handlers.load_post
 
 
-@persistent
+@bpy.app.handlers.persistent
 def _forget(_scene: object, depsgraph: bpy.types.Depsgraph | None = None) -> None:
     updates = getattr(depsgraph, "updates", None)
     if updates is None or any(each.is_updated_geometry for each in updates):

@@ -92,7 +92,9 @@ def _active(mesh: bpy.types.Mesh) -> dict[str, str]:
     names = {}
     if mesh.uv_layers.active:
         names["uv"] = mesh.uv_layers.active.name
-    names |= {"render": each.name for each in mesh.uv_layers if each.active_render}
+    for layer in mesh.uv_layers:
+        if layer.active_render:
+            names["render"] = layer.name
     if mesh.color_attributes.active_color_name:
         names["color"] = mesh.color_attributes.active_color_name
     if mesh.color_attributes.default_color_name:

@@ -146,13 +146,15 @@ def _task(thing: bpy.types.Object, wanted: settings.Settings) -> Todo:
 
 def _replace(context: bpy.types.Context, outcome: Done) -> dict[str, Any]:
     """Gives an object its new mesh; returns what is told of it."""
-    report = outcome.result.report | {"lost": outcome.task.artist.lost}
+    given = outcome.task.artist
+    report = outcome.result.report | {"lost": given.lost if given else []}
     thing = context.scene.objects.get(outcome.task.name)
     if thing is None:
         return report
     old, name = thing.data, thing.data.name
     thing.data = mesh_arrays.write(outcome.result, like=old)
-    artist.write(thing, outcome.task.artist, outcome.result, old)
+    if given:
+        artist.write(thing, given, outcome.result, old)
     if old.users == 0:
         bpy.data.meshes.remove(old)
         thing.data.name = name

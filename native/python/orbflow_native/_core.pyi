@@ -58,7 +58,7 @@ class CancelToken:
 
 @final
 class Origins:
-    """What of the input every element of the result comes from: values are to be mixed by weights."""
+    """What of the input every element of the result comes from: mix values by the weights."""
 
     @property
     def vertex_corners(self) -> _Ints:

@@ -4,7 +4,7 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use orbflow_geometry::pipeline;
 use pyo3::prelude::*;
 
-/// What of the input every element of the result comes from: values are to be mixed by weights.
+/// What of the input every element of the result comes from: mix values by the weights.
 #[pyclass(frozen, get_all, module = "orbflow_native")]
 pub struct Origins {
     /// `(V, 3) int32`: of every vertex three corners of one face of the input.
