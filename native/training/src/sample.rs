@@ -3,7 +3,7 @@
 use glam::DVec3;
 use orbflow_geometry::decimate::{self, CollapseError, collapse_to_tetrahedron, simplify};
 use orbflow_geometry::embed::{self, distortion};
-use orbflow_geometry::hierarchy::HierarchyError;
+use orbflow_geometry::hierarchy::{CollapseHierarchy, HierarchyError};
 use orbflow_geometry::measure::area_vector;
 use orbflow_geometry::mesh::{Id, TriangleMesh, TriangleMeshError, VertexMap};
 use orbflow_geometry::progress::Progress;
@@ -13,8 +13,10 @@ use thiserror::Error;
 
 use crate::parts::refined;
 
-/// Faces before the collapse: enough that the finest level is chosen by it, few enough to be fast.
-const N_FACES: usize = 3_000;
+/// Faces before the collapse, at least: enough that the finest level of 500 vertices is chosen by it.
+const LEAST_FACES: usize = 3_000;
+/// The same for finer levels, as many for each of their vertices: twice as many as they have.
+const FACES_PER_VERTEX: usize = 4;
 /// A triangle of less than this share of the mean area has no shape to keep.
 const LEAST_AREA: f64 = 1e-5;
 /// How much of the mean squared edge is added to the rest metric, as the solver does below 5,000
@@ -74,17 +76,45 @@ pub enum SampleError {
     Solver(#[from] embed::Error),
 }
 
+/// How many faces the meshes have that levels of these sizes, fine to coarse, are taken from.
+pub fn n_faces_for(levels: &[usize]) -> usize {
+    let finest = levels.first().copied().unwrap_or(0);
+    LEAST_FACES.max(finest.saturating_mul(FACES_PER_VERTEX))
+}
+
+/// Brings a closed mesh of genus 0 to a number of faces, and collapses it.
+///
+/// # Errors
+/// [`SampleError`].
+pub fn training_level(
+    mesh: TriangleMesh,
+    n_faces: usize,
+) -> Result<CollapseHierarchy, SampleError> {
+    let quiet = Progress::none();
+    let settings = decimate::Settings { n_faces };
+    let small = simplify(&refined(mesh, n_faces), &settings, &quiet)?.mesh;
+    Ok(collapse_to_tetrahedron(small, &quiet)?)
+}
+
 impl Sample {
     /// Prepares a closed mesh of genus 0 for a network with levels of these sizes.
     ///
     /// # Errors
     /// [`SampleError`].
     pub fn new(name: String, mesh: TriangleMesh, levels: &[usize]) -> Result<Self, SampleError> {
-        let quiet = Progress::none();
-        let settings = decimate::Settings { n_faces: N_FACES };
-        let small = simplify(&refined(mesh, N_FACES), &settings, &quiet)?.mesh;
-        let hierarchy = collapse_to_tetrahedron(small, &quiet)?;
-        let prepared = Prepared::new(&hierarchy, levels)?;
+        Self::of(name, &training_level(mesh, n_faces_for(levels))?, levels)
+    }
+
+    /// The same from what [`training_level`] made.
+    ///
+    /// # Errors
+    /// [`SampleError`].
+    pub fn of(
+        name: String,
+        hierarchy: &CollapseHierarchy,
+        levels: &[usize],
+    ) -> Result<Self, SampleError> {
+        let prepared = Prepared::new(hierarchy, levels)?;
         let mesh = TriangleMesh::new(prepared.positions.clone(), prepared.faces.clone())?;
         Ok(Self {
             name,
