@@ -305,11 +305,10 @@ fn embed_hierarchy(
     predictor: &dyn OffsetPredictor,
     progress: &Progress<'_>,
 ) -> Result<Embedded, Error> {
-    let settings = embed::Settings::default();
     Ok(embed::embed(
         hierarchy,
         predictor,
-        &settings,
+        &predictor.finish(),
         &progress.part("", 0.2, 1.0),
     )?)
 }
