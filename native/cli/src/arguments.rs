@@ -1,15 +1,14 @@
 //! What can be asked for on the command line.
 
-use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
-use clap::builder::{PossibleValuesParser, TypedValueParser, ValueParser};
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use orbflow_geometry::mesh::io::Format;
-use orbflow_geometry::pipeline::{Kind, MAX_FACES, MIN_FACES, Mirror, Primitive, Settings, Style};
+use orbflow_geometry::pipeline::{Kind, Mirror, Primitive, Settings, Style};
 use orbflow_geometry::score;
 
+use crate::parsers::{degrees, format, kind, mirror, n_faces, primitive, share};
 use crate::place::Place;
 
 const AFTER_HELP: &str = "\
@@ -350,65 +349,4 @@ fn check_different<'a>(
 
 fn wrong(message: String) -> clap::Error {
     Arguments::command().error(ErrorKind::ArgumentConflict, message)
-}
-
-fn n_faces() -> ValueParser {
-    whole(MIN_FACES as u64..=MAX_FACES as u64)
-}
-
-/// A parser of whole numbers in a range.
-pub fn whole(range: RangeInclusive<u64>) -> ValueParser {
-    let parser = clap::value_parser!(u64).range(range);
-    ValueParser::new(parser.map(|n| n as usize))
-}
-
-/// A parser of the names of some values.
-fn named<T>(values: &'static [T], name: fn(T) -> &'static str) -> ValueParser
-where
-    T: Copy + Send + Sync + 'static,
-{
-    let parser = PossibleValuesParser::new(values.iter().map(|&value| name(value)));
-    ValueParser::new(parser.try_map(move |given| {
-        let value = values.iter().find(|value| name(**value) == given);
-        value.copied().ok_or("no such value")
-    }))
-}
-
-fn format(values: &'static [Format]) -> ValueParser {
-    named(values, Format::name)
-}
-
-fn kind() -> ValueParser {
-    named(&[Kind::Triangles, Kind::Quads], Kind::name)
-}
-
-fn share(text: &str) -> Result<f64, String> {
-    up_to(text, 1.0)
-}
-
-fn degrees(text: &str) -> Result<f64, String> {
-    up_to(text, 180.0)
-}
-
-fn up_to(text: &str, most: f64) -> Result<f64, String> {
-    let value = text.parse().map_err(|error| format!("{error}"))?;
-    if (0.0..=most).contains(&value) {
-        return Ok(value);
-    }
-    Err(format!("it goes from 0 to {most}"))
-}
-
-fn mirror() -> ValueParser {
-    const ALL: &[Mirror] = &[Mirror::Off, Mirror::Auto, Mirror::X, Mirror::Y, Mirror::Z];
-    named(ALL, Mirror::name)
-}
-
-fn primitive() -> ValueParser {
-    const ALL: &[Primitive] = &[
-        Primitive::Adaptive,
-        Primitive::Flow,
-        Primitive::QuadSphere,
-        Primitive::Icosphere,
-    ];
-    named(ALL, Primitive::name)
 }

@@ -12,6 +12,7 @@ mod evaluate;
 mod inputs;
 mod interrupt;
 mod outputs;
+mod parsers;
 mod place;
 mod predictor;
 #[cfg(feature = "train")]

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 use orbflow_training::prepare::{Settings, prepare as prepare_set};
 
-use crate::arguments::whole;
 use crate::bar::with_bar;
 use crate::error::Error;
 use crate::interrupt::Interrupt;
 use crate::outputs::Outputs;
+use crate::parsers::whole;
 use crate::place::Place;
 
 #[derive(Args, Debug)]

@@ -107,6 +107,8 @@ pub fn prepare(
             writer.append(source, &shapes)?;
         }
     }
+    // Whose lock would keep readers out on some systems.
+    drop(writer);
     Ok(Set::open(output)?)
 }
 

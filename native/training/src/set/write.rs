@@ -62,13 +62,15 @@ impl Writer {
             cause,
         };
         let front = front(head);
-        let mut open = OpenOptions::new();
-        let open = open.read(true).write(true).create(true).truncate(false);
-        let file = open.open(path).map_err(failed)?;
-        lock(&file, path)?;
+        // Read before it is locked: a lock keeps readers out too on some systems.
+        let there = match fs::metadata(path) {
+            Ok(known) => known.len(),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => 0,
+            Err(cause) => return Err(failed(cause)),
+        };
         // A run that was cut while it wrote the head left a part of it.
-        let is_new = fs::metadata(path).map_err(failed)?.len() < front.len() as u64
-            && front.starts_with(&fs::read(path).map_err(failed)?);
+        let is_new = there < front.len() as u64
+            && (there == 0 || front.starts_with(&fs::read(path).map_err(failed)?));
         let (n_done, end) = if is_new {
             (0, 0)
         } else {
@@ -76,6 +78,14 @@ impl Writer {
             check_same(path, (set.head(), head), (&set.sources(), names))?;
             (set.sources().len(), set.end())
         };
+        let mut open = OpenOptions::new();
+        let open = open.read(true).write(true).create(true).truncate(false);
+        let file = open.open(path).map_err(failed)?;
+        lock(&file, path)?;
+        if file.metadata().map_err(failed)?.len() != there {
+            let path = path.to_owned();
+            return Err(WriterError::Locked { path });
+        }
         let mut writer = Self {
             path: path.to_owned(),
             file,

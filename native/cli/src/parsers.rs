@@ -1,0 +1,75 @@
+//! How the words of arguments become values.
+
+use std::ops::RangeInclusive;
+
+use clap::builder::{PossibleValuesParser, TypedValueParser, ValueParser};
+use orbflow_geometry::mesh::io::Format;
+use orbflow_geometry::pipeline::{Kind, MAX_FACES, MIN_FACES, Mirror, Primitive};
+
+/// A parser of the number of faces of a result.
+pub fn n_faces() -> ValueParser {
+    whole(MIN_FACES as u64..=MAX_FACES as u64)
+}
+
+/// A parser of whole numbers in a range.
+pub fn whole(range: RangeInclusive<u64>) -> ValueParser {
+    let parser = clap::value_parser!(u64).range(range);
+    ValueParser::new(parser.map(|n| n as usize))
+}
+
+/// A parser of the names of some values.
+fn named<T>(values: &'static [T], name: fn(T) -> &'static str) -> ValueParser
+where
+    T: Copy + Send + Sync + 'static,
+{
+    let parser = PossibleValuesParser::new(values.iter().map(|&value| name(value)));
+    ValueParser::new(parser.try_map(move |given| {
+        let value = values.iter().find(|value| name(**value) == given);
+        value.copied().ok_or("no such value")
+    }))
+}
+
+/// A parser of some formats by name.
+pub fn format(values: &'static [Format]) -> ValueParser {
+    named(values, Format::name)
+}
+
+/// A parser of the kinds of polygons by name.
+pub fn kind() -> ValueParser {
+    named(&[Kind::Triangles, Kind::Quads], Kind::name)
+}
+
+/// Reads a share: 0 to 1.
+pub fn share(text: &str) -> Result<f64, String> {
+    up_to(text, 1.0)
+}
+
+/// Reads an angle in degrees: 0 to 180.
+pub fn degrees(text: &str) -> Result<f64, String> {
+    up_to(text, 180.0)
+}
+
+fn up_to(text: &str, most: f64) -> Result<f64, String> {
+    let value = text.parse().map_err(|error| format!("{error}"))?;
+    if (0.0..=most).contains(&value) {
+        return Ok(value);
+    }
+    Err(format!("it goes from 0 to {most}"))
+}
+
+/// A parser of the planes of symmetry by name.
+pub fn mirror() -> ValueParser {
+    const ALL: &[Mirror] = &[Mirror::Off, Mirror::Auto, Mirror::X, Mirror::Y, Mirror::Z];
+    named(ALL, Mirror::name)
+}
+
+/// A parser of the primitives by name.
+pub fn primitive() -> ValueParser {
+    const ALL: &[Primitive] = &[
+        Primitive::Adaptive,
+        Primitive::Flow,
+        Primitive::QuadSphere,
+        Primitive::Icosphere,
+    ];
+    named(ALL, Primitive::name)
+}
