@@ -212,7 +212,8 @@ def test_shape_keys_keep_their_moves_settings_and_drivers(open_fixture: Open) ->
     assert (smile.value, smile.slider_max, wink.mute) == (0.25, 2.0, True)
     assert wink.relative_key == smile
     for vertex, moved in zip(thing.data.vertices, smile.data, strict=True):
-        assert moved.co == pytest.approx(vertex.co + vertex.co * vertex.co.z, abs=0.02)
+        wanted = tuple(vertex.co + vertex.co * vertex.co.z)
+        assert tuple(moved.co) == pytest.approx(wanted, abs=0.02)
     (driver,) = keys.animation_data.drivers
     assert driver.driver.expression == "-0.5"
     assert driver.data_path == 'key_blocks["Smile"].slider_min'

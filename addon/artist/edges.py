@@ -47,7 +47,8 @@ def write(mesh: bpy.types.Mesh, edges: Edges, result: orbflow_native.Remeshed) -
 def ends_of(mesh: bpy.types.Mesh) -> Int:
     """The vertices of every edge, (E, 2)."""
     ends = np.empty(2 * len(mesh.edges), np.int32)
-    mesh.edges.foreach_get("vertices", ends)
+    if len(ends):
+        mesh.attributes[".edge_verts"].data.foreach_get("value", ends)
     return ends.reshape(-1, 2)
 
 

@@ -70,20 +70,23 @@ def _cuts(mesh: bpy.types.Mesh, corner_vert: Int, maps: list[NDArray[np.float32]
     if not maps or not len(corner_vert):
         return np.empty((0, 2), np.int32)
     ends, sides = ends_of(mesh), _corners(mesh, ".corner_edge")
-    ahead = np.arange(1, len(sides) + 1)
+    loops = np.arange(len(sides), dtype=np.int32)
     starts = np.empty(len(mesh.polygons), np.int32)
     mesh.polygons.foreach_get("loop_start", starts)
     # The last corner of a face is followed by its first.
+    ahead = loops + 1
     ahead[np.append(starts[1:], len(sides)) - 1] = starts
-    is_turned = corner_vert != ends[sides, 0]
-    first, last = np.zeros(len(ends), int), np.zeros(len(ends), int)
-    first[sides[::-1]] = np.arange(len(sides))[::-1]
-    last[sides] = np.arange(len(sides))
+    # Of every edge the sides on two faces, each by the corner it begins at.
+    first, last = np.zeros((2, len(ends)), np.int32)
+    first[sides[::-1]] = loops[::-1]
+    last[sides] = loops
+    is_turned = (corner_vert[first] != corner_vert[last])[:, None]
     is_cut = np.zeros(len(ends), bool)
     for coordinates in maps:
-        here, there = coordinates, coordinates[ahead]
-        at_ends = np.where(is_turned[:, None], np.hstack((there, here)), np.hstack((here, there)))
-        is_cut |= (np.abs(at_ends[first] - at_ends[last]) > _APART).any(axis=1)
+        here, there = coordinates[last], coordinates[ahead[last]]
+        others = np.where(is_turned, there, here), np.where(is_turned, here, there)
+        for corner, other in zip((first, ahead[first]), others, strict=True):
+            is_cut |= (np.abs(coordinates[corner] - other) > _APART).any(axis=1)
     return ends[is_cut]
 
 

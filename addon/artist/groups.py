@@ -41,7 +41,7 @@ def read(thing: bpy.types.Object) -> list[Group]:
 
 def write(thing: bpy.types.Object, groups: list[Group], mix: Mix) -> None:
     """Gives an object with a new mesh the same groups."""
-    for i, given in enumerate(groups):
+    for given in groups:
         group = thing.vertex_groups.new(name=given.name)
         group.lock_weight = given.is_locked
         weights = mix.of(given.weights[:, None])[:, 0].clip(0, 1)
@@ -52,5 +52,6 @@ def write(thing: bpy.types.Object, groups: list[Group], mix: Mix) -> None:
         bounds = np.searchsorted(which[order], np.arange(1, len(values)))
         for value, vertices in zip(values, np.split(inside[order], bounds), strict=False):
             group.add(vertices.tolist(), float(value), "REPLACE")
+    for i, given in enumerate(groups):
         if given.is_active:
             thing.vertex_groups.active_index = i
