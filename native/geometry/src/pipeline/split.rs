@@ -5,7 +5,6 @@
 //! mesh into closed parts of genus 0 with tagged faces, which `join` takes out again.
 
 use super::Error;
-use crate::measure;
 use crate::mesh::TriangleMesh;
 use crate::progress::Progress;
 
