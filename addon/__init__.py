@@ -7,10 +7,11 @@ nothing itself. `operators/remesh.py` is the button, `job.py` the thread behind 
 
 import bpy
 
-from . import overlay, panel, settings
+from . import overlay, panel, preferences, settings
 from .operators import remesh
 
 _CLASSES = (
+    preferences.OrbflowPreferences,
     settings.OrbflowSettings,
     remesh.OBJECT_OT_orbflow_remesh,
     panel.VIEW3D_PT_orbflow,

@@ -8,7 +8,8 @@ from typing import Any
 
 import orbflow_native
 
-from .mesh_arrays import MeshArrays
+from .artist import Artist
+from .mesh_arrays import Float, MeshArrays
 
 Listener = Callable[[str, float], None]
 
@@ -20,6 +21,8 @@ class Task:
     name: str
     arrays: MeshArrays
     scale: tuple[float, float, float]
+    artist: Artist | None = None
+    density: Float | None = None
 
 
 @dataclass(frozen=True)
@@ -39,10 +42,12 @@ class Failed:
 
 
 Outcome = Done | Failed
+# What could not even be read has failed already.
+Todo = Task | Failed
 
 
 def remesh(
-    tasks: list[Task],
+    tasks: list[Todo],
     settings: dict[str, Any],
     listener: Listener,
     cancel: orbflow_native.CancelToken,
@@ -50,6 +55,9 @@ def remesh(
     """Remeshes one task after the other; a task that fails does not stop the others."""
     outcomes: list[Outcome] = []
     for i, task in enumerate(tasks):
+        if isinstance(task, Failed):
+            outcomes.append(task)
+            continue
 
         def listen(step: str, share: float, i: int = i) -> None:
             listener(step, (i + share) / len(tasks))
@@ -69,13 +77,16 @@ def _remesh_one(
     listener: Listener,
     cancel: orbflow_native.CancelToken,
 ) -> orbflow_native.Remeshed:
-    arrays = task.arrays
+    arrays, artist = task.arrays, task.artist
     return orbflow_native.remesh(
         arrays.positions,
         arrays.loop_start,
         arrays.corner_vert,
         material_index=arrays.material_index,
         marked_edges=arrays.marked_edges,
+        carried_edges=artist and artist.edges and artist.edges.ends,
+        cut_edges=artist and artist.elements.cuts,
+        density=task.density,
         scale=task.scale,
         progress=listener,
         cancel=cancel,
@@ -87,7 +98,7 @@ def _remesh_one(
 class Job:
     """A run on a thread of its own, watched from a modal operator."""
 
-    tasks: list[Task]
+    tasks: list[Todo]
     settings: dict[str, Any]
     step: str = "starting"
     share: float = 0.0

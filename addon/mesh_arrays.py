@@ -13,6 +13,8 @@ import numpy as np
 import orbflow_native
 from numpy.typing import NDArray
 
+from .artist.edges import ends_of
+
 Int = NDArray[np.int32]
 Float = NDArray[np.float32]
 
@@ -47,7 +49,11 @@ def read(mesh: bpy.types.Mesh, marks: Iterable[str] = ()) -> MeshArrays:
     if len(mesh.loops):
         mesh.attributes[".corner_vert"].data.foreach_get("value", corners)
     return MeshArrays(
-        positions.reshape(-1, 3), loop_start, corners, _materials(mesh), _marked(mesh, marks)
+        positions.reshape(-1, 3),
+        loop_start,
+        corners,
+        _materials(mesh),
+        _marked(mesh, marks),
     )
 
 
@@ -71,9 +77,7 @@ def _marked(mesh: bpy.types.Mesh, marks: Iterable[str]) -> Int | None:
         found |= values > 0
     if not found.any():
         return None
-    ends = np.empty(2 * len(found), np.int32)
-    mesh.edges.foreach_get("vertices", ends)
-    return ends.reshape(-1, 2)[found]
+    return ends_of(mesh)[found]
 
 
 def write(arrays: MeshArrays | orbflow_native.Remeshed, like: bpy.types.Mesh) -> bpy.types.Mesh:

@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Marks the irregular vertices of the active mesh in the 3D view.
+"""Marks the irregular vertices of the active mesh, and the field behind them, in the 3D view.
 
 Where fewer edges meet than on a regular grid a vertex is blue if one is missing, red if there is
 one too many, black otherwise. Vertices on a border are left out: their valence says nothing.
+
+What is drawn is kept from one redraw to the next: to read a large mesh takes longer than a frame.
 """
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import bpy
 import gpu
@@ -14,12 +18,18 @@ from gpu_extras.batch import batch_for_shader
 from mathutils import Matrix
 from numpy.typing import NDArray
 
-_COLOURS = {
+from . import panel
+
+Colour = tuple[float, float, float, float]
+
+_COLOURS: dict[str, Colour] = {
     "fewer": (0.10, 0.35, 1.00, 1.0),
     "more": (1.00, 0.10, 0.10, 1.0),
     "other": (0.00, 0.00, 0.00, 1.0),
 }
+_CROSS_COLOUR: Colour = (0.95, 0.55, 0.10, 1.0)
 _SIZE_PX = 9.0
+_WIDTH_PX = 1.5
 # Share of the way to the eye by which marks are drawn nearer. Below, the surface around a vertex
 # hides half of its mark; ten times as much shows marks through fingers.
 _NEARER = 0.004
@@ -36,8 +46,41 @@ class Irregular:
     other: NDArray[np.float32]
 
 
+@dataclass(frozen=True)
+class Figure:
+    """Points or lines of one colour, in the space of the object."""
+
+    kind: str
+    colour: Colour
+    positions: NDArray[np.float32]
+
+
+class Kept:
+    """What was made last of a mesh, as long as the mesh is the same."""
+
+    def __init__(self) -> None:
+        """Keeps nothing."""
+        self._made: dict[str, tuple[tuple[int, ...], list[Any]]] = {}
+
+    def get(self, what: str, mesh: bpy.types.Mesh, make: Callable[[], list[Any]]) -> list[Any]:
+        """What is kept, or what `make` makes where that is of another mesh."""
+        key = (mesh.as_pointer(), len(mesh.vertices), len(mesh.polygons))
+        if what not in self._made or self._made[what][0] != key:
+            self._made[what] = (key, make())
+        return self._made[what][1]
+
+    def forget(self) -> None:
+        """Keeps nothing any more."""
+        self._made.clear()
+
+
+_kept = Kept()
+
+
 def register() -> None:
     """Starts drawing; without a window there is nothing to draw on."""
+    for handlers in _changes():
+        handlers.append(_forget)
     if not bpy.app.background:
         space = bpy.types.SpaceView3D
         _handles.append(space.draw_handler_add(_draw, (), "WINDOW", "POST_VIEW"))
@@ -45,8 +88,25 @@ def register() -> None:
 
 def unregister() -> None:
     """Stops drawing."""
+    for handlers in _changes():
+        handlers.remove(_forget)
+    _kept.forget()
     while _handles:
         bpy.types.SpaceView3D.draw_handler_remove(_handles.pop(), "WINDOW")
+
+
+def _changes() -> Iterator[list[Any]]:
+    """The lists of what Blender calls when a mesh may have changed."""
+    handlers = bpy.app.handlers
+    yield from (handlers.depsgraph_update_post, handlers.undo_post, handlers.redo_post)
+    yield handlers.load_post
+
+
+@bpy.app.handlers.persistent
+def _forget(_scene: object, depsgraph: bpy.types.Depsgraph | None = None) -> None:
+    updates = getattr(depsgraph, "updates", None)
+    if updates is None or any(each.is_updated_geometry for each in updates):
+        _kept.forget()
 
 
 def irregular(mesh: bpy.types.Mesh) -> Irregular:
@@ -70,24 +130,46 @@ def _read(mesh: bpy.types.Mesh, name: str, field: str, n: int, kind: type) -> ND
     return values
 
 
+def figures(thing: bpy.types.Object, what: str) -> list[Figure]:
+    """What to draw of an object: its irregular vertices or the crosses of its field."""
+    if what == "crosses":
+        crosses = panel.last_crosses(thing)
+        return [] if crosses is None else [Figure("LINES", _CROSS_COLOUR, cross_lines(crosses))]
+    marks = irregular(thing.data)
+    return [Figure("POINTS", colour, getattr(marks, name)) for name, colour in _COLOURS.items()]
+
+
+def cross_lines(crosses: NDArray[np.float32]) -> NDArray[np.float32]:
+    """The ends of the two lines of every cross, (4N, 3), of places and arms (N, 3, 3)."""
+    place, first, second = (crosses[:, i] for i in range(3))
+    ends = (place - first, place + first, place - second, place + second)
+    return np.stack(ends, axis=1).reshape(-1, 3)
+
+
 def _draw() -> None:
     context = bpy.context
     thing = context.active_object
-    is_wanted = context.scene.orbflow.show_irregular and context.space_data.overlay.show_overlays
-    if not is_wanted or context.mode != "OBJECT" or thing is None or thing.type != "MESH":
+    if context.mode != "OBJECT" or thing is None or thing.type != "MESH":
         return
-    if not thing.visible_get():
+    wanted = [what for what in ("irregular", "crosses") if _is_wanted(context, what)]
+    if not wanted or not thing.visible_get():
         return
-    marks = irregular(thing.data)
     gpu.state.depth_test_set("LESS_EQUAL")
     gpu.state.point_size_set(_SIZE_PX)
+    gpu.state.line_width_set(_WIDTH_PX)
     with gpu.matrix.push_pop():
         view = gpu.matrix.get_model_view_matrix()
         gpu.matrix.load_matrix(_towards_the_eye(context.region_data) @ view @ thing.matrix_world)
-        for name, colour in _COLOURS.items():
-            _draw_points(getattr(marks, name), colour)
+        for what in wanted:
+            draw(thing, what)
     gpu.state.point_size_set(1.0)
+    gpu.state.line_width_set(1.0)
     gpu.state.depth_test_set("NONE")
+
+
+def _is_wanted(context: bpy.types.Context, what: str) -> bool:
+    shows = context.space_data.overlay.show_overlays
+    return shows and getattr(context.scene.orbflow, f"show_{what}")
 
 
 def _towards_the_eye(view: bpy.types.RegionView3D) -> Matrix:
@@ -96,16 +178,26 @@ def _towards_the_eye(view: bpy.types.RegionView3D) -> Matrix:
     return Matrix.Translation((0, 0, _NEARER * view.view_distance))
 
 
-def _draw_points(positions: NDArray[np.float32], colour: tuple[float, float, float, float]) -> None:
-    if not len(positions):
-        return
-    shader = _shader()
-    batch = batch_for_shader(shader, "POINTS", {"pos": positions})
-    shader.uniform_float("color", colour)
-    batch.draw(shader)
+def draw(thing: bpy.types.Object, what: str) -> None:
+    """Draws the figures of an object by the matrices that are set."""
+
+    def batches() -> list[Any]:
+        return [_batch(figure) for figure in figures(thing, what) if len(figure.positions)]
+
+    for batch, shader, colour in _kept.get(what, thing.data, batches):
+        shader.uniform_float("color", colour)
+        batch.draw(shader)
 
 
-def _shader() -> gpu.types.GPUShader:
+def _batch(figure: Figure) -> tuple[gpu.types.GPUBatch, gpu.types.GPUShader, Colour]:
+    shader = _shader(figure.kind)
+    batch = batch_for_shader(shader, figure.kind, {"pos": figure.positions})
+    return batch, shader, figure.colour
+
+
+def _shader(kind: str) -> gpu.types.GPUShader:
+    if kind == "LINES":
+        return gpu.shader.from_builtin("UNIFORM_COLOR")
     try:
         return gpu.shader.from_builtin("POINT_UNIFORM_COLOR")
     except ValueError:  # before Blender 4.5 one shader drew points and lines alike

@@ -1,14 +1,29 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The sidebar panel and the menu entry."""
 
+import textwrap
+from dataclasses import dataclass
 from typing import Any
 
 import bpy
+import numpy as np
+from numpy.typing import NDArray
 
 from . import settings
 
-# The report of each object's last run in this session, by the object's name.
-_reports: dict[str, dict[str, Any]] = {}
+
+@dataclass(frozen=True)
+class _Last:
+    """What is kept of a run: in this session alone, not in the file."""
+
+    report: dict[str, Any]
+    crosses: NDArray[np.float32]
+
+
+# Of each object's last run, by the object's name.
+_last: dict[str, _Last] = {}
+# How many letters of a sentence fit beside the icon in a panel of the usual width.
+_LINE = 36
 
 
 _ROWS = (
@@ -39,7 +54,9 @@ class VIEW3D_PT_orbflow(bpy.types.Panel):
         for name in settings.NAMES:
             layout.prop(context.scene.orbflow, name)
         _button(layout, context)
-        layout.prop(context.scene.orbflow, "show_irregular")
+        column = layout.column(heading="Show")
+        column.prop(context.scene.orbflow, "show_irregular")
+        column.prop(context.scene.orbflow, "show_crosses")
         report = _report_of(context.object)
         if report:
             _draw_score(layout.box().column(align=True), report)
@@ -56,14 +73,19 @@ def _button(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     settings.copy(context.scene.orbflow, button)
 
 
-def remember(name: str, report: dict[str, Any]) -> None:
-    """Keeps the report of an object's last run for the panel."""
-    _reports[name] = report
+def remember(name: str, report: dict[str, Any], crosses: NDArray[np.float32]) -> None:
+    """Keeps what the panel and the overlay show of an object's last run."""
+    _last[name] = _Last(report, crosses)
 
 
 def last_report(name: str) -> dict[str, Any] | None:
     """The report of an object's last run in this session."""
-    return _reports.get(name)
+    return _last[name].report if name in _last else None
+
+
+def last_crosses(thing: bpy.types.Object) -> NDArray[np.float32] | None:
+    """The crosses of the field of what an object is now, as places and arms (N, 3, 3)."""
+    return _last[thing.name].crosses if _report_of(thing) else None
 
 
 def _report_of(thing: bpy.types.Object | None) -> dict[str, Any] | None:
@@ -86,8 +108,24 @@ def sentence(reports: list[dict[str, Any]]) -> str:
         sum(report[side]["n_faces"] for report in reports) for side in ("input", "output")
     )
     objects = f"{len(reports)} objects: " if len(reports) > 1 else ""
-    told = _without_flow(reports) + _without_mirror(reports)
+    told = "".join(f"; {each}" for each in exceptions(reports))
     return f"{objects}{before:,} faces became {after:,}{told}"
+
+
+def exceptions(reports: list[dict[str, Any]]) -> list[str]:
+    """In words what is otherwise than was asked for."""
+    lost = ", ".join(sorted({each for report in reports for each in report["lost"]}))
+    told = [_without_flow(reports), _without_mirror(reports), _without_marks(reports)]
+    told.append(f"not carried over: {lost}" if lost else "")
+    return [each for each in told if each]
+
+
+def _without_marks(reports: list[dict[str, Any]]) -> str:
+    """Which share of what was left on edges is on no edge of the result."""
+    shares = [report["carried"]["length_pct"] for report in reports if report["carried"]]
+    gone = 100 - min(shares, default=100)
+    # Chords are shorter than what they stand for.
+    return f"{gone:.0f} % of the marks of edges are gone: no edge lies there" if gone > 5 else ""
 
 
 def _without_flow(reports: list[dict[str, Any]]) -> str:
@@ -98,7 +136,7 @@ def _without_flow(reports: list[dict[str, Any]]) -> str:
 def _without_mirror(reports: list[dict[str, Any]]) -> str:
     """Whether symmetry was asked for and could not be had, and why."""
     if any(r["settings"]["mirror"] != "off" and r["plane"] is None for r in reports):
-        return "; no plane of symmetry was found"
+        return "no plane of symmetry was found"
     return _refused(reports, "mirrored", "not symmetric")
 
 
@@ -109,7 +147,7 @@ def _refused(reports: list[dict[str, Any]], what: str, words: str) -> str:
     if not refused:
         return ""
     of = f" in {len(refused)} of {len(parts)} parts" if len(parts) > 1 else ""
-    return f"; {words}{of}: {refused[0][what]['reason']}"
+    return f"{words}{of}: {refused[0][what]['reason']}"
 
 
 def rows(report: dict[str, Any]) -> list[tuple[str, str]]:
@@ -123,6 +161,9 @@ def rows(report: dict[str, Any]) -> list[tuple[str, str]]:
 
 
 def _draw_score(column: bpy.types.UILayout, report: dict[str, Any]) -> None:
+    for text in exceptions([report]):
+        for i, line in enumerate(textwrap.wrap(text, _LINE)):
+            column.label(text=line, icon="NONE" if i else "INFO")
     for words, value in rows(report):
         row = column.row()
         row.label(text=words)

@@ -6,10 +6,14 @@ import math
 from typing import Any
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
+
+from . import density, preferences
 
 MIN_FACES = 4
 MAX_FACES = 4_000_000
+# How many crosses of the field a result brings: enough to read the field, a tenth of a megabyte.
+N_CROSSES = 4000
 
 _KINDS = (
     ("QUADS", "Quads", "Faces with four corners"),
@@ -34,13 +38,24 @@ _MIRRORS = (
     ("Y", "Y", "Across Y; a mesh that is not symmetric is made so from the side of positive Y"),
     ("Z", "Z", "Across Z; a mesh that is not symmetric is made so from the side of positive Z"),
 )
-_PREDICTORS = (("SOLVER", "Solver", "Finds the map to the sphere by optimisation"),)
+_PREDICTORS = (
+    ("SOLVER", "Solver", "Finds the map to the sphere by optimisation"),
+    (
+        "NETWORK",
+        "Network",
+        "A graph network with the weights that the preferences of the add-on name",
+    ),
+)
 
 
 def _share(name: str, description: str) -> Any:  # noqa: ANN401 - a property that is made later
     return FloatProperty(
         name=name, description=description, default=0.5, min=0.0, max=1.0, subtype="FACTOR"
     )
+
+
+def _densities(_settings: object, context: bpy.types.Context, _typed: str) -> list[tuple[str, str]]:
+    return density.names(context.object)
 
 
 class Settings:
@@ -66,6 +81,14 @@ class Settings:
     )
     adaptivity: _share(
         "Adaptivity", "Flowing quads: 0 makes all of one size, 1 much smaller ones where it bends"
+    )
+    density: StringProperty(
+        name="Density",
+        description=(
+            "Flowing quads: vertex group or color attribute that says where they are small, about "
+            "half as long where it is 1 or white as where it is 0 or black; the count stays"
+        ),
+        search=_densities,
     )
     sharp_angle: FloatProperty(
         name="Sharp Angle",
@@ -110,6 +133,8 @@ class Settings:
 
 
 NAMES = tuple(Settings.__annotations__)
+# Settings that name data of the mesh.
+_OF_MESH = {"density", "marked_edges"}
 
 
 class OrbflowSettings(bpy.types.PropertyGroup, Settings):
@@ -123,14 +148,24 @@ class OrbflowSettings(bpy.types.PropertyGroup, Settings):
         ),
         default=False,
     )
+    show_crosses: BoolProperty(
+        name="Field Crosses",
+        description=(
+            "Show the field that the quads of the active mesh follow, as found by the last run in "
+            "this session"
+        ),
+        default=False,
+    )
 
 
 def for_core(source: Settings) -> dict[str, Any]:
-    """The settings as keywords of `orbflow_native.remesh`; marks are read off the mesh."""
-    values = {name: _value(getattr(source, name)) for name in NAMES if name != "marked_edges"}
+    """The settings as keywords of `orbflow_native.remesh`, but for those that name data."""
+    values = {name: _value(getattr(source, name)) for name in NAMES if name not in _OF_MESH}
     return values | {
         "sharp_angle": math.degrees(source.sharp_angle),
         "mirror": source.mirror.lower(),
+        "weights": preferences.weights() if source.predictor == "NETWORK" else None,
+        "n_crosses": N_CROSSES,
     }
 
 

@@ -63,6 +63,7 @@ def test_panel_and_operator_have_the_same_settings(operator: Any, scene_settings
         "primitive",
         "follow_shape",
         "adaptivity",
+        "density",
         "sharp_angle",
         "marked_edges",
         "mirror",

@@ -299,3 +299,27 @@ def test_the_extension_can_be_switched_off_and_on(open_fixture: Open) -> None:
     assert not hasattr(bpy.types, "OBJECT_OT_orbflow_remesh")
     bpy.ops.preferences.addon_enable(module=name)
     assert hasattr(bpy.types, "OBJECT_OT_orbflow_remesh")
+
+
+def test_a_fallback_is_named_in_the_panel_and_the_info_line(open_fixture: Open) -> None:
+    first = open_fixture("03")
+    press.orbflow_remesh(faces=200)
+    panel = addon("panel")
+    report = panel.last_report(first.name)
+    assert panel.exceptions([report]) == []
+    refused = {"status": "refused", "reason": "no whole periods: none"}
+    report["parts"][0]["flow"] = refused
+    told = "quad sphere instead of flow: no whole periods: none"
+    assert panel.exceptions([report]) == [told]
+    assert panel.sentence([report]).endswith(f"; {told}")
+    shown: list[str] = []
+
+    class Column:
+        def label(self, text: str, icon: str = "NONE") -> None:
+            shown.append(f"{icon} {text}")
+
+        def row(self) -> "Column":
+            return self
+
+    panel._draw_score(Column(), report)
+    assert shown[:2] == ["INFO quad sphere instead of flow: no", "NONE whole periods: none"]

@@ -1,6 +1,12 @@
 """The marks on irregular vertices; drawing itself needs a window."""
 
+from pathlib import Path
+
 import bpy
+import numpy as np
+import orbflow_native
+import pytest
+from shapes import ball
 from test_operator import Open, addon, press
 
 
@@ -54,3 +60,83 @@ def test_marks_are_off_at_first_and_saved_with_the_scene(open_fixture: Open) -> 
 def test_without_a_window_nothing_is_drawn(open_fixture: Open) -> None:
     open_fixture("03")
     assert addon("overlay")._handles == []
+
+
+def lengths(crosses: np.ndarray) -> np.ndarray:
+    """Of the two arms of crosses."""
+    return np.linalg.norm(crosses[:, 1:], axis=2)
+
+
+def test_the_field_is_kept_for_the_session_and_lies_on_the_mesh(open_fixture: Open) -> None:
+    spot = open_fixture("01")
+    assert addon("panel").last_crosses(spot) is None
+    press.orbflow_remesh(faces=500)
+    crosses = addon("panel").last_crosses(spot)
+    assert 2000 < len(crosses) <= addon("settings").N_CROSSES
+    low, high = (np.array(spot.bound_box).min(0) - 0.05, np.array(spot.bound_box).max(0) + 0.05)
+    assert ((crosses[:, 0] > low) & (crosses[:, 0] < high)).all()
+    first, second = crosses[:, 1], crosses[:, 2]
+    assert np.abs((first * second).sum(1)).max() < 1e-6
+    assert lengths(crosses)[:, 0] == pytest.approx(lengths(crosses)[:, 1], rel=1e-3)
+    edges = [
+        (spot.data.vertices[a].co - spot.data.vertices[b].co).length
+        for a, b in (edge.vertices for edge in spot.data.edges)
+    ]
+    assert np.median(2 * lengths(crosses)) == pytest.approx(np.median(edges), rel=0.25)
+    (figure,) = addon("overlay").figures(spot, "crosses")
+    assert figure.positions.shape == (4 * len(crosses), 3)
+    assert figure.positions[1] - figure.positions[0] == pytest.approx(2 * first[0], abs=1e-6)
+
+
+def test_no_field_is_shown_of_a_mesh_that_has_changed_or_does_not_flow(open_fixture: Open) -> None:
+    first = open_fixture("03")
+    press.orbflow_remesh(faces=200, kind="TRIANGLES")
+    assert len(addon("panel").last_crosses(first)) == 0
+    press.orbflow_remesh(faces=200)
+    assert len(addon("panel").last_crosses(first)) > 100
+    first.data = bpy.data.meshes.new("Other")
+    assert addon("overlay").figures(first, "crosses") == []
+
+
+def test_crosses_are_told_only_when_asked_for() -> None:
+    mesh = ball()
+    assert orbflow_native.remesh(*mesh, faces=200, score_samples=0).crosses.shape == (0, 3, 3)
+    some = orbflow_native.remesh(*mesh, faces=200, score_samples=0, n_crosses=50)
+    assert 25 <= len(some.crosses) <= 50
+
+
+def test_the_file_does_not_grow_by_what_is_shown(open_fixture: Open, tmp_path: Path) -> None:
+    open_fixture("03")
+    sizes = []
+    press.orbflow_remesh(faces=200)
+    for shows in (False, True):
+        bpy.context.scene.orbflow.show_crosses = shows
+        bpy.ops.wm.save_as_mainfile(
+            filepath=str(tmp_path / "shown.blend"), compress=False, copy=True
+        )
+        sizes.append((tmp_path / "shown.blend").stat().st_size)
+    assert abs(sizes[1] - sizes[0]) < 2000
+
+
+def test_what_is_drawn_is_kept_until_the_mesh_changes(open_fixture: Open) -> None:
+    first = open_fixture("03")
+    kept, made = addon("overlay")._kept, []
+
+    def get() -> None:
+        kept.get("irregular", first.data, lambda: made.append(1) or [])
+
+    get()
+    get()
+    assert len(made) == 1
+    first.location.x = 2
+    bpy.context.view_layer.update()
+    get()
+    assert len(made) == 1
+    first.data.vertices[0].co.x += 1
+    first.data.update_tag()
+    bpy.context.view_layer.update()
+    get()
+    assert len(made) == 2
+    press.orbflow_remesh(faces=200)
+    get()
+    assert len(made) == 3

@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The button: Object > Orbflow Remesh."""
 
+from dataclasses import replace
+from typing import Any
+
 import bpy
 import orbflow_native
 
-from .. import mesh_arrays, panel, settings
-from ..job import Done, Failed, Job, Outcome, Task, remesh
+from .. import artist, density, mesh_arrays, panel, preferences, settings
+from ..job import Done, Failed, Job, Outcome, Task, Todo, remesh
 
 _TICK_S = 0.05
 
@@ -31,7 +34,7 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """The blocking twin for scripts, background mode and the redo panel."""
-        tasks = _tasks(context, self.marked_edges)
+        tasks = _tasks(context, self)
         window_manager = context.window_manager
         window_manager.progress_begin(0.0, 1.0)
         try:
@@ -49,7 +52,7 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
         """Starts the thread and stays modal until it has ended."""
         if bpy.app.background:
             return self.execute(context)
-        _running.append(Job(_tasks(context, self.marked_edges), settings.for_core(self)))
+        _running.append(Job(_tasks(context, self), settings.for_core(self)))
         self._timer = context.window_manager.event_timer_add(_TICK_S, window=context.window)
         context.window_manager.modal_handler_add(self)
         context.workspace.status_text_set(_draw_status)
@@ -92,14 +95,13 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
         texts = [each.error for each in failed]
         if len(outcomes) > 1:
             texts = [f"{each.task.name}: {each.error}" for each in failed]
-        for each in done:
-            _replace(context, each)
+        reports = [_replace(context, each) for each in done]
         if not done:
             self.report({"ERROR"}, "; ".join(texts))
             return {"CANCELLED"}
         if texts:
             self.report({"WARNING"}, "; ".join(texts))
-        self.report({"INFO"}, panel.sentence([each.result.report for each in done]))
+        self.report({"INFO"}, panel.sentence(reports))
         return {"FINISHED"}
 
 
@@ -121,25 +123,43 @@ def _is_editable(thing: bpy.types.Object) -> bool:
     return thing.is_editable and thing.data.library is None
 
 
-def _tasks(context: bpy.types.Context, marks: set[str]) -> list[Task]:
+def _tasks(context: bpy.types.Context, wanted: settings.Settings) -> list[Todo]:
     context.view_layer.update()
     return [
-        Task(each.name, mesh_arrays.read(each.data, marks), tuple(each.matrix_world.to_scale()))
+        _task(each, wanted)
         for each in context.selected_objects
         if each.type == "MESH" and _is_editable(each)
     ]
 
 
-def _replace(context: bpy.types.Context, outcome: Done) -> None:
+def _task(thing: bpy.types.Object, wanted: settings.Settings) -> Todo:
+    arrays = mesh_arrays.read(thing.data, wanted.marked_edges)
+    scale = tuple(thing.matrix_world.to_scale())
+    task = Task(thing.name, arrays, scale, artist.read(thing))
+    if wanted.predictor == "NETWORK" and not preferences.weights():
+        return Failed(task, preferences.NO_WEIGHTS)
+    try:
+        return replace(task, density=density.read(thing, wanted.density))
+    except density.NoSuchName as error:
+        return Failed(task, str(error))
+
+
+def _replace(context: bpy.types.Context, outcome: Done) -> dict[str, Any]:
+    """Gives an object its new mesh; returns what is told of it."""
+    given = outcome.task.artist
+    report = outcome.result.report | {"lost": given.lost if given else []}
     thing = context.scene.objects.get(outcome.task.name)
     if thing is None:
-        return
+        return report
     old, name = thing.data, thing.data.name
     thing.data = mesh_arrays.write(outcome.result, like=old)
+    if given:
+        artist.write(thing, given, outcome.result, old)
     if old.users == 0:
         bpy.data.meshes.remove(old)
         thing.data.name = name
-    panel.remember(thing.name, outcome.result.report)
+    panel.remember(thing.name, report, outcome.result.crosses)
+    return report
 
 
 def _is_navigation(event: bpy.types.Event) -> bool:

@@ -30,6 +30,7 @@ def bars(results: Results) -> list[Bar]:
         ("quads", _quads),
         ("flow", _flow),
         ("flow_many", _flow_many),
+        ("flow_few", _flow_few),
         ("flow_even", _flow_even),
         ("flow_bodies", _flow_bodies),
         ("flow_artists", _flow_artists),
@@ -161,6 +162,16 @@ def _flow(rows: list[Row]) -> list[Bar]:
 def _flow_many(rows: list[Row]) -> list[Bar]:
     what = "`--primitive flow --faces 8000`, {}"
     return [_sound(rows, what, 1), *_against(rows, what, "quadriflow", 0.5)]
+
+
+def _flow_few(rows: list[Row]) -> list[Bar]:
+    what = "`--primitive flow --faces` 100, 200, 300 and 499, {}"
+    upright = [{"ok": row["ok"] and row["jacobian_min"] > 0} for row in rows]
+    return [
+        _sound(rows, what, 3),
+        Bar(what.format("used, not a fallback"), "", _count(rows, "is_used"), None),
+        Bar(what.format("no inverted quad"), "", _count(upright), None),
+    ]
 
 
 def _flow_even(rows: list[Row]) -> list[Bar]:

@@ -9,6 +9,7 @@ from remeshing import N_MANY_QUADS, N_QUADS, beside_peers, flows, remeshed, say
 BODIES = ("human_f", "human_m", "man_low_poly", "horse", "trex")
 # Fewer quads than a cube's do not close a surface.
 LEAST_QUADS = 6
+FEW_QUADS = (100, 200, 300, 499)
 
 
 def flow(bench: Bench) -> list[Row]:
@@ -19,6 +20,16 @@ def flow(bench: Bench) -> list[Row]:
 def flow_many(bench: Bench) -> list[Row]:
     """8,000 quads on every mesh, the peers in turn with it."""
     return beside_peers(bench, "flow", N_MANY_QUADS)
+
+
+def flow_few(bench: Bench) -> list[Row]:
+    """A few hundred quads of every mesh, as for games and far away things."""
+    rows = []
+    for n_quads in FEW_QUADS:
+        for mesh in single_balls(bench.dev):
+            rows.append(remeshed(bench, mesh.path, ("flow", n_quads)))
+            say(rows[-1], "n_asked", "faces", "is_used", "chamfer_pct", "jacobian_min")
+    return rows
 
 
 def flow_even(bench: Bench) -> list[Row]:

@@ -59,6 +59,7 @@ PARTS: dict[str, Callable[[Bench], list[Row]]] = {
     "quads": remeshing.quads,
     "flow": flowing.flow,
     "flow_many": flowing.flow_many,
+    "flow_few": flowing.flow_few,
     "flow_even": flowing.flow_even,
     "flow_bodies": flowing.flow_bodies,
     "flow_artists": flowing.flow_artists,

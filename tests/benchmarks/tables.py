@@ -66,6 +66,18 @@ BODIES = (
     ("spiral_pct", "spiral %", ".1f"),
     ("run_s", "CPU s", ".2f"),
 )
+FEW = (
+    ("n_asked", "asked", "d"),
+    ("flow_share", "flow used", ".0%"),
+    ("upright_share", "no inverted quad", ".0%"),
+    ("count_error_pct", "count error %", ".1f"),
+    ("chamfer_pct", "mean distance %", ".3f"),
+    ("hausdorff_pct", "Hausdorff %", ".1f"),
+    ("jacobian_mean", "scaled Jacobian", ".3f"),
+    ("irregular_pct", "irregular %", ".0f"),
+    ("loop_edges_pct", "loop edges %", ".0f"),
+    ("run_s", "CPU s", ".2f"),
+)
 WHOLE = (
     ("input_triangles", "input triangles", "d"),
     ("run_s", "Orbflow, CPU s", ".2f"),
@@ -124,6 +136,21 @@ def _cell(value: object, form: str) -> str:
     return "–" if value is None or value != value else format(value, form)
 
 
+def few_table(rows: Sequence[Row]) -> str:
+    """One line a number of quads: shares of the meshes and medians over them."""
+    lines = [_line([title for _, title, _ in FEW]), "|" + "---|" * len(FEW)]
+    for n_asked in dict.fromkeys(row["n_asked"] for row in rows if row["ok"]):
+        group = [row for row in rows if row["ok"] and row["n_asked"] == n_asked]
+        figures: Row = {key: median(group, key) for key, _, _ in FEW[3:]}
+        figures |= {
+            "n_asked": n_asked,
+            "flow_share": sum(row["is_used"] for row in group) / len(group),
+            "upright_share": sum(row["jacobian_min"] > 0 for row in group) / len(group),
+        }
+        lines.append(_line([_cell(figures[key], form) for key, _, form in FEW]))
+    return "\n".join(lines)
+
+
 def steps_table(rows: Sequence[Row]) -> str:
     """Median CPU seconds of every step."""
     done = [row["steps_s"] for row in rows if row.get("ok") and "steps_s" in row]
@@ -155,6 +182,7 @@ def tables(results: Results) -> dict[str, str]:
         ("flow", "flow", partial(table, columns=FLOW)),
         ("flow_steps", "flow", steps_table),
         ("flow_many", "flow_many", partial(table, columns=FLOW)),
+        ("flow_few", "flow_few", few_table),
         ("flow_bodies", "flow_bodies", partial(table, columns=BODIES)),
         ("large", "large", partial(table, columns=LARGE, with_median=False)),
     ):

@@ -93,7 +93,7 @@ pub struct Rebuilt {
 }
 
 /// What is to be made.
-#[derive(Args, Clone, Copy, Debug)]
+#[derive(Args, Debug)]
 pub struct Wanted {
     /// How many faces to make
     #[arg(long, value_name = "N", default_value_t = Settings::default().faces, value_parser = n_faces())]
@@ -109,6 +109,10 @@ pub struct Wanted {
     /// Edges sharper than this get edges of the result along them; 180 for none
     #[arg(long, value_name = "DEGREES", default_value_t = Settings::default().sharp_angle, value_parser = degrees)]
     pub sharp_angle: f64,
+    /// Numbers from 0 to 1, one for each vertex of IN, as text: where they are 1, edges of flowing
+    /// quads are half as long as where they are 0
+    #[arg(long, value_name = "FILE")]
+    pub density: Option<PathBuf>,
     /// Make quads that are their own image across an axis, in the plane through the origin or the
     /// middle of the mesh; auto finds one in which the mesh is symmetric
     #[arg(long, default_value = "off", value_parser = mirror())]
@@ -254,6 +258,7 @@ impl Wanted {
             seed: work.seed,
             threads: work.threads,
             score: files.report.as_ref().map(|_| score::Settings::default()),
+            ..Settings::default()
         }
     }
 

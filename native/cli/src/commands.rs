@@ -8,11 +8,11 @@ use orbflow_geometry::{clean, score};
 use serde_json::Value;
 
 use crate::arguments::{
-    Command, Decimate, Embed, InAndOut, Predict, Rebuilt, Remesh, Score, output_format,
+    Command, Decimate, Embed, InAndOut, Predict, Rebuilt, Remesh, Score, Wanted, output_format,
 };
 use crate::bar::with_bar;
 use crate::error::Error;
-use crate::inputs::read;
+use crate::inputs::{numbers, read};
 use crate::interrupt::Interrupt;
 use crate::outputs::Outputs;
 use crate::place::Place;
@@ -38,7 +38,7 @@ pub fn run(command: &Command) -> Result<(), Error> {
 
 fn remesh(arguments: &Remesh, interrupt: &Interrupt) -> Result<(), Error> {
     let Remesh { files, wanted, run } = arguments;
-    let mut job = Rebuilding::begin(files, interrupt)?;
+    let mut job = Rebuilding::begin((files, wanted), interrupt)?;
     let predictor = run.build()?;
     let settings = wanted.settings(run.work, files);
     let remeshed = job.remesh(&settings, predictor.as_ref())?;
@@ -53,7 +53,7 @@ fn predict(arguments: &Predict, interrupt: &Interrupt) -> Result<(), Error> {
         weights,
         work,
     } = arguments;
-    let mut job = Rebuilding::begin(files, interrupt)?;
+    let mut job = Rebuilding::begin((files, wanted), interrupt)?;
     let predictor = network(weights)?;
     let settings = wanted.settings(*work, files);
     let remeshed = job.remesh(&settings, &predictor)?;
@@ -85,11 +85,16 @@ struct Rebuilding<'a> {
     files: &'a Rebuilt,
     token: &'a CancelToken,
     file: MeshFile,
+    /// How much denser quads are wanted at every vertex, where a file says it.
+    density: Option<Vec<f64>>,
     outputs: Outputs,
 }
 
 impl<'a> Rebuilding<'a> {
-    fn begin(files: &'a Rebuilt, interrupt: &'a Interrupt) -> Result<Self, Error> {
+    fn begin(
+        (files, wanted): (&'a Rebuilt, &Wanted),
+        interrupt: &'a Interrupt,
+    ) -> Result<Self, Error> {
         let InAndOut { input, output, .. } = &files.files;
         let file = read(&input.input, input.input_format)?;
         let token = interrupt.start_work();
@@ -99,6 +104,7 @@ impl<'a> Rebuilding<'a> {
             files,
             token,
             file,
+            density: wanted.density.as_deref().map(numbers).transpose()?,
             outputs,
         })
     }
@@ -111,6 +117,7 @@ impl<'a> Rebuilding<'a> {
         let place = &self.files.files.input.input;
         let input = Input {
             materials: materials(&self.file),
+            density: self.density.as_deref(),
             ..Input::new(&self.file.mesh)
         };
         let remeshed = with_bar(self.token, |progress| {

@@ -27,6 +27,16 @@ pub enum Error {
     /// The file of weights cannot be read.
     #[error("cannot read {}: {cause}", path.display())]
     OpenWeights { path: PathBuf, cause: io::Error },
+    /// The file of densities cannot be read.
+    #[error("cannot read {}: {cause}", path.display())]
+    OpenNumbers { path: PathBuf, cause: io::Error },
+    /// A word in it is no number.
+    #[error("{}, line {line}: '{word}' is not a number", path.display())]
+    NotANumber {
+        path: PathBuf,
+        line: usize,
+        word: String,
+    },
     /// The file holds no weights that this program can use.
     #[error("{}: {cause}", path.display())]
     Weights {

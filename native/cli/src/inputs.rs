@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::io::{self, Read};
+use std::path::Path;
 
 use orbflow_geometry::mesh::io::{self as mesh_io, Format, MeshFile};
 
@@ -21,6 +22,24 @@ pub fn read(place: &Place, format: Option<Format>) -> Result<MeshFile, Error> {
         place: place.clone(),
         cause,
     })
+}
+
+/// Numbers from a text file, between white space.
+pub fn numbers(path: &Path) -> Result<Vec<f64>, Error> {
+    let text = fs::read_to_string(path).map_err(|cause| Error::OpenNumbers {
+        path: path.to_owned(),
+        cause,
+    })?;
+    let lines = text.lines().enumerate();
+    let words = lines.flat_map(|(i, line)| line.split_whitespace().map(move |word| (i + 1, word)));
+    let number = |(line, word): (usize, &str)| {
+        word.parse().map_err(|_| Error::NotANumber {
+            path: path.to_owned(),
+            line,
+            word: word.to_owned(),
+        })
+    };
+    words.map(number).collect()
 }
 
 fn bytes(place: &Place) -> io::Result<Vec<u8>> {

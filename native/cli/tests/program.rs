@@ -373,3 +373,46 @@ fn ctrl_c_ends_with_130_and_writes_nothing() {
 fn count_faces(obj: &str) -> usize {
     obj.lines().filter(|line| line.starts_with("f ")).count()
 }
+
+#[test]
+fn densities_are_read_from_text_and_named_when_wrong() {
+    let folder = Folder::new();
+    let input = folder.write("ball.obj", &ball(""));
+    let [output, list] = ["out.obj", "list.txt"].map(|name| folder.path(name));
+    let vertices = ball("");
+    let vertices = vertices.lines().filter_map(|line| line.strip_prefix("v "));
+    let right = |line: &str| u8::from(!line.starts_with('-')).to_string();
+    let right: Vec<String> = vertices.map(right).collect();
+    let with = |text: &str, faces: &str| {
+        fs::write(&list, text).unwrap();
+        run(&[
+            "remesh",
+            &input,
+            &output,
+            "--density",
+            &list,
+            "--faces",
+            faces,
+        ])
+    };
+    let done = with("0 1\nhalf", "300");
+    assert_eq!(done.code, 3);
+    assert!(
+        done.err
+            .contains("list.txt, line 2: 'half' is not a number"),
+        "{}",
+        done.err
+    );
+    let done = with("0 1", "300");
+    assert!(done.err.contains("2 densities for"), "{}", done.err);
+    assert_eq!(folder.names(), ["ball.obj", "list.txt"]);
+    let done = with(&right.join("\n"), "300");
+    assert_eq!((done.code, done.err.as_str()), (0, ""));
+    let text = fs::read_to_string(&output).unwrap();
+    let lines = text.lines().filter_map(|line| line.strip_prefix("v "));
+    let [n_left, n_right] = lines.fold([0, 0], |mut n, line| {
+        n[usize::from(!line.starts_with('-'))] += 1;
+        n
+    });
+    assert!(2 * n_right > 3 * n_left, "{n_left} {n_right}");
+}

@@ -4,7 +4,9 @@ mod common;
 
 use glam::{DMat3, DVec3};
 use orbflow_geometry::decimate::collapse_to_tetrahedron;
-use orbflow_geometry::embed::{Embedded, Error, Settings, Solver, distortion, embed, even};
+use orbflow_geometry::embed::{
+    Embedded, Error, OffsetPredictor, Settings, Solver, distortion, embed, even,
+};
 use orbflow_geometry::hierarchy::CollapseHierarchy;
 use orbflow_geometry::mesh::{TriangleMesh, VertexId};
 use orbflow_geometry::progress::{CancelToken, Cancelled, Progress};
@@ -37,6 +39,23 @@ fn random_blobs_and_limbs_are_embedded_with_low_energy() {
         assert!(blob.energy < 1.75 && blob.complete, "{seed}: {blob:?}");
         let limbs = solved(common::limbs(seed, 9)).report;
         assert!(limbs.energy < 2.5, "{seed}: {limbs:?}");
+    }
+}
+
+#[test]
+fn a_solver_in_a_hurry_comes_close_with_half_the_work() {
+    for seed in [2, 4] {
+        // Some 2,400 vertices: most levels are beyond those that it sweeps.
+        let hierarchy = hierarchy(common::limbs(seed, 20));
+        let [thorough, brisk] = [Solver::default(), Solver::BRISK].map(|solver| {
+            let found = embed(&hierarchy, &solver, &solver.finish(), &Progress::none());
+            found.expect("limbs are closed").report
+        });
+        assert!(
+            2 * brisk.n_relaxations < thorough.n_relaxations
+                && brisk.energy < 1.02 * thorough.energy,
+            "{seed}: {brisk:?} {thorough:?}"
+        );
     }
 }
 

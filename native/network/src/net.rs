@@ -26,6 +26,7 @@ pub const LEAST_SQUARE: f32 = 1e-6;
 
 /// The sizes of a network.
 #[derive(Clone, PartialEq, Eq, Debug, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct Sizes {
     /// How many numbers a vertex holds inside.
     pub width: usize,

@@ -1,7 +1,7 @@
 //! The network as a predictor of `embed`.
 
 use glam::DVec3;
-use orbflow_geometry::embed::{OffsetPredictor, PredictError, Proposal};
+use orbflow_geometry::embed::{OffsetPredictor, PredictError, Proposal, Settings};
 use orbflow_geometry::hierarchy::CollapseHierarchy;
 use orbflow_geometry::mesh::VertexMap;
 use orbflow_geometry::progress::Progress;
@@ -33,6 +33,10 @@ impl NetworkPredictor {
 impl OffsetPredictor for NetworkPredictor {
     fn name(&self) -> &'static str {
         "network"
+    }
+
+    fn finish(&self) -> Settings {
+        Settings::BRISK
     }
 
     fn propose(

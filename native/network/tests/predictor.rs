@@ -34,6 +34,12 @@ fn weights() -> Weights {
     }
 }
 
+/// The network of the committed run.
+fn trained() -> Weights {
+    let bytes = include_bytes!("../../training/runs/2026-11-24/weights.orbflow");
+    Weights::from_bytes(bytes).expect("they are whole")
+}
+
 fn predictor(weights: &Weights) -> NetworkPredictor {
     NetworkPredictor::new(weights).expect("parameters of their sizes")
 }
@@ -62,8 +68,7 @@ const RECORDED: &[(&str, f64, f64)] = &[
 
 #[test]
 fn the_weights_of_the_committed_run_do_what_they_did() {
-    let bytes = include_bytes!("../../training/runs/2026-11-24/weights.orbflow");
-    let trained = predictor(&Weights::from_bytes(bytes).expect("they are whole"));
+    let trained = predictor(&trained());
     let shapes = hierarchies();
     assert_eq!(shapes.len(), RECORDED.len());
     for ((name, hierarchy), &(wanted, energy, folds_pct)) in shapes.iter().zip(RECORDED) {
@@ -105,6 +110,37 @@ fn the_proposal_turns_moves_and_grows_with_the_mesh() {
     let [still, turned] = [mesh.clone(), mesh.with_positions(places.collect())].map(propose);
     for (p, q) in still.sphere.iter().zip(turned.sphere.iter()) {
         assert!((turn * *p).distance(*q) < 1e-3, "{p} {q}");
+    }
+}
+
+#[test]
+fn a_turned_mesh_gets_a_proposal_as_good() {
+    let trained = predictor(&trained());
+    for (name, hierarchy) in hierarchies() {
+        let mesh = hierarchy.mesh();
+        let energy = |turn: DMat3| {
+            let places = mesh.positions().iter().map(|&p| turn * p).collect();
+            let turned = mesh.clone().with_positions(places);
+            let hierarchy = collapse_to_tetrahedron(turned, &Progress::none());
+            check(&hierarchy.expect("it was closed"), &trained)
+                .proposal
+                .energy
+        };
+        let still = energy(DMat3::IDENTITY);
+        let mut random = Random::new(5);
+        for _ in 0..6 {
+            let angles = [0, 1, 2].map(|_| random.unit() * std::f64::consts::TAU);
+            let turned = energy(DMat3::from_euler(
+                glam::EulerRot::XYZ,
+                angles[0],
+                angles[1],
+                angles[2],
+            ));
+            assert!(
+                (turned / still - 1.0).abs() < 0.02,
+                "{name}: {turned} {still}"
+            );
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 """The compiled half of the package `orbflow_native`."""
 
+import os
 from collections.abc import Callable
 from typing import Any, Final, TypeAlias, final
 
@@ -20,6 +21,7 @@ __all__ = [
     "Embedded",
     "InputError",
     "OrbflowError",
+    "Origins",
     "Remeshed",
     "__version__",
     "decimate",
@@ -55,6 +57,30 @@ class CancelToken:
         """Whether the flag is up."""
 
 @final
+class Origins:
+    """What of the input every element of the result comes from: mix values by the weights."""
+
+    @property
+    def vertex_corners(self) -> _Ints:
+        """`(V, 3) int32`: of every vertex three corners of one face of the input."""
+
+    @property
+    def vertex_weights(self) -> _Floats:
+        """`(V, 3) float32`: their weights, which sum to 1."""
+
+    @property
+    def corner_corners(self) -> _Ints:
+        """`(L, 3) int32`: of every corner three corners of one face of the input."""
+
+    @property
+    def corner_weights(self) -> _Floats:
+        """`(L, 3) float32`: their weights, which sum to 1."""
+
+    @property
+    def faces(self) -> _Ints:
+        """`(F,) int32`: the face of the input under every face."""
+
+@final
 class Remeshed:
     """A new mesh and how it came about."""
 
@@ -77,6 +103,22 @@ class Remeshed:
     @property
     def sphere(self) -> _Floats:
         """`(V, 3) float32`: where each vertex lies on the unit sphere of its part."""
+
+    @property
+    def carried_edges(self) -> _Ints:
+        """`(M, 2) int32`: the edges, by their ends, that lie on edges to be carried."""
+
+    @property
+    def carried_from(self) -> _Ints:
+        """`(M,) int32`: on which of the edges to be carried each of them lies."""
+
+    @property
+    def origins(self) -> Origins | None:
+        """What of the input every element comes from; `None` without `cut_edges`."""
+
+    @property
+    def crosses(self) -> _Floats:
+        """`(N, 3, 3) float32`: place and two arms of crosses, arms half as long as edges."""
 
     @property
     def report(self) -> dict[str, Any]:
@@ -143,12 +185,17 @@ def remesh(
     sharp_angle: float = 40.0,
     mirror: str = "off",
     predictor: str = "solver",
+    weights: bytes | str | os.PathLike[str] | None = None,
     threads: int = 0,
     seed: int = 0,
     scale: tuple[float, float, float] | None = None,
     score_samples: int = 10_000,
+    n_crosses: int = 0,
     material_index: _Ints | None = None,
     marked_edges: _Ints | None = None,
+    carried_edges: _Ints | None = None,
+    cut_edges: _Ints | None = None,
+    density: _Floats | None = None,
     reduced: tuple[_Floats, _Ints] | None = None,
     progress: _Listener | None = None,
     cancel: CancelToken | None = None,
@@ -161,6 +208,7 @@ def embed(
     corner_vert: _Ints,
     *,
     predictor: str = "solver",
+    weights: bytes | str | os.PathLike[str] | None = None,
     threads: int = 0,
     progress: _Listener | None = None,
     cancel: CancelToken | None = None,

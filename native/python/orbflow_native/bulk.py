@@ -56,12 +56,17 @@ def remesh(
     sharp_angle: float = 40.0,
     mirror: str = "off",
     predictor: str = "solver",
+    weights: bytes | str | os.PathLike[str] | None = None,
     threads: int = 0,
     seed: int = 0,
     scale: tuple[float, float, float] | None = None,
     score_samples: int = 10_000,
+    n_crosses: int = 0,
     material_index: _Ints | None = None,
     marked_edges: _Ints | None = None,
+    carried_edges: _Ints | None = None,
+    cut_edges: _Ints | None = None,
+    density: _Floats | None = None,
     reduced: tuple[_Floats, _Ints] | None = None,
     progress: Callable[[str, float], Any] | None = None,
     cancel: _core.CancelToken | None = None,
@@ -73,9 +78,17 @@ def remesh(
     suits the kind. How quads flow: `follow_shape` from 0 (smooth loops) to 1 (edges along the
     curvature), `adaptivity` from 0 (quads of one size) to 1 (much smaller where the surface is
     bent). Edges at which the surface turns by more than `sharp_angle` degrees, and the
-    `marked_edges`, pairs of vertices (E, 2), get edges of the result along them. `mirror` makes
-    flowing quads their own image across "x", "y" or "z", in the plane through the origin or the
-    middle of the mesh; with "auto" across the first in which the mesh is symmetric.
+    `marked_edges`, pairs of vertices (E, 2), get edges of the result along them. `density` (V,)
+    goes from 0 to 1: where it is 1, edges of flowing quads are about half as long as where it is
+    0; the number of faces stays what was asked for. `mirror` makes flowing quads their own image
+    across "x", "y" or "z", in the plane through the origin or the middle of the mesh; with "auto"
+    across the first in which the mesh is symmetric.
+    Edges of the result that lie on `carried_edges` (E, 2) are told, so that what is marked on
+    these can be carried over. With `cut_edges` (E, 2), along which data on corners is cut as
+    texture coordinates are along seams, the result tells where each of its elements comes from.
+    `predictor` is "solver", or "network" with `weights`: the bytes of
+    a file that `orbflow train` wrote, or its path. `n_crosses` is how many crosses of the field
+    that the quads follow to tell at most.
     `scale` is the scale of the object: faces are even in the scaled space, the
     result is in the space of the input. `reduced` is the same mesh with fewer triangles, as
     points (V, 3) and triangles (T, 3); without it, fast-simplification makes it for large
@@ -100,12 +113,17 @@ def remesh(
         sharp_angle=sharp_angle,
         mirror=mirror,
         predictor=predictor,
+        weights=weights,
         threads=threads,
         seed=seed,
         scale=scale,
         score_samples=score_samples,
+        n_crosses=n_crosses,
         material_index=material_index,
         marked_edges=marked_edges,
+        carried_edges=carried_edges,
+        cut_edges=cut_edges,
+        density=density,
         reduced=reduced,
         progress=progress,
         cancel=cancel,

@@ -2,10 +2,11 @@
 
 use glam::DVec3;
 use numpy::{
-    Element, PyArray1, PyArray2, PyArrayDescrMethods, PyArrayMethods, PyUntypedArray,
+    Element, PyArray1, PyArray2, PyArray3, PyArrayDescrMethods, PyArrayMethods, PyUntypedArray,
     PyUntypedArrayMethods,
 };
 use orbflow_geometry::mesh::{FaceId, Id, PolygonMesh, PolygonMeshError, VertexId};
+use orbflow_geometry::pipeline::{CarriedEdge, Cross};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
@@ -45,16 +46,26 @@ pub fn triangles(
         .map_err(|error| InputError::new_err(error.to_string()))
 }
 
-/// An array of one dimension of `int32`.
-pub fn column(array: &Bound<'_, PyAny>, name: &str, shape: &str) -> PyResult<Vec<i32>> {
+/// An array of one dimension.
+pub fn column<T: Element + Copy>(
+    array: &Bound<'_, PyAny>,
+    name: &str,
+    shape: &str,
+) -> PyResult<Vec<T>> {
     let typed = array
-        .cast::<PyArray1<i32>>()
-        .map_err(|_| wrong_type::<i32>(array, name, shape))?;
+        .cast::<PyArray1<T>>()
+        .map_err(|_| wrong_type::<T>(array, name, shape))?;
     typed
         .readonly()
         .as_slice()
-        .map(<[i32]>::to_vec)
+        .map(<[T]>::to_vec)
         .map_err(|_| not_contiguous(name))
+}
+
+/// The densities of a `(V,) float32` array.
+pub fn densities(array: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+    let values = column::<f32>(array, "density", "(V,)")?;
+    Ok(values.into_iter().map(f64::from).collect())
 }
 
 /// The points of a `(N, 3) float32` array, multiplied by `scale`.
@@ -64,13 +75,13 @@ fn points(array: &Bound<'_, PyAny>, name: &str, scale: DVec3) -> PyResult<Vec<DV
     Ok(flat.chunks_exact(3).map(point).collect())
 }
 
-/// The edges of a `(E, 2) int32` array, by their ends.
-pub fn vertex_pairs(array: &Bound<'_, PyAny>) -> PyResult<Vec<[VertexId; 2]>> {
-    let flat = rows::<i32, 2>(array, "marked_edges", "(E, 2)")?;
+/// The edges of a `(E, 2) int32` array, by their ends; `kind` says what edges they are.
+pub fn vertex_pairs(array: &Bound<'_, PyAny>, kind: &str) -> PyResult<Vec<[VertexId; 2]>> {
+    let flat = rows::<i32, 2>(array, &format!("{kind}_edges"), "(E, 2)")?;
     let pairs = flat.chunks_exact(2).enumerate();
     let vertex = |edge: usize, vertex: i32| {
         let id = u32::try_from(vertex).map(VertexId);
-        id.map_err(|_| InputError::new_err(format!("marked edge {edge} names vertex {vertex}")))
+        id.map_err(|_| InputError::new_err(format!("{kind} edge {edge} names vertex {vertex}")))
     };
     pairs
         .map(|(edge, ends)| Ok([vertex(edge, ends[0])?, vertex(edge, ends[1])?]))
@@ -164,6 +175,34 @@ pub fn point_array(py: Python<'_>, points: &[DVec3], scale: DVec3) -> PyResult<P
         .collect();
     Ok(PyArray1::from_vec(py, flat)
         .reshape([points.len(), 3])?
+        .unbind())
+}
+
+/// The ends of carried edges, `(M, 2) int32`.
+pub fn end_array(py: Python<'_>, edges: &[CarriedEdge]) -> PyResult<Py<PyArray2<i32>>> {
+    let flat: Vec<i32> = edges
+        .iter()
+        .flat_map(|e| e.ends)
+        .map(|v| v.0 as i32)
+        .collect();
+    Ok(PyArray1::from_vec(py, flat)
+        .reshape([edges.len(), 2])?
+        .unbind())
+}
+
+/// Which of the old edges each carried one lies on, `(M,) int32`.
+pub fn from_array(py: Python<'_>, edges: &[CarriedEdge]) -> Py<PyArray1<i32>> {
+    PyArray1::from_iter(py, edges.iter().map(|e| e.from as i32)).unbind()
+}
+
+/// Places and arms of crosses, `(N, 3, 3) float32`, multiplied by `scale`.
+pub fn cross_array(py: Python<'_>, crosses: &[Cross], scale: DVec3) -> PyResult<Py<PyArray3<f32>>> {
+    let points = crosses.iter().flat_map(|c| [c.place, c.arms[0], c.arms[1]]);
+    let flat: Vec<f32> = points
+        .flat_map(|p| (p * scale).as_vec3().to_array())
+        .collect();
+    Ok(PyArray1::from_vec(py, flat)
+        .reshape([crosses.len(), 3, 3])?
         .unbind())
 }
 

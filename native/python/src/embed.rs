@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{self, MeshArrays};
 use crate::job::{CancelToken, Job};
+use crate::predictor::predictor;
 use crate::report;
 
 /// A mesh of triangles and its map to the sphere.
@@ -29,7 +30,8 @@ pub struct Embedded {
 /// Raises `InputError` when the mesh cannot be done, `Cancelled` when the token was raised.
 #[pyfunction]
 #[pyo3(signature = (
-    positions, loop_start, corner_vert, *, predictor="solver", threads=0, progress=None, cancel=None,
+    positions, loop_start, corner_vert, *, predictor="solver", weights=None, threads=0, progress=None,
+    cancel=None,
 ))]
 #[expect(
     clippy::too_many_arguments,
@@ -41,6 +43,7 @@ pub fn embed<'py>(
     loop_start: &Bound<'py, PyAny>,
     corner_vert: &Bound<'py, PyAny>,
     predictor: &str,
+    weights: Option<&Bound<'py, PyAny>>,
     threads: usize,
     progress: Option<Bound<'py, PyAny>>,
     cancel: Option<&CancelToken>,
@@ -51,9 +54,9 @@ pub fn embed<'py>(
         corner_vert,
     }
     .mesh(DVec3::ONE)?;
-    let predictor = report::predictor(predictor)?;
+    let predictor = self::predictor(predictor, weights)?;
     let embedded = Job::new(progress, cancel).run(py, |progress| {
-        pipeline::embed(&mesh, threads, &predictor, progress)
+        pipeline::embed(&mesh, threads, predictor.as_ref(), progress)
     })?;
     Ok(Embedded {
         positions: arrays::point_array(py, embedded.mesh.positions(), DVec3::ONE)?,

@@ -9,6 +9,8 @@ mod decimate;
 mod embed;
 mod errors;
 mod job;
+mod origins;
+mod predictor;
 mod remesh;
 mod report;
 mod score;
@@ -27,6 +29,8 @@ mod _core {
     use crate::errors::{Cancelled, InputError, OrbflowError};
     #[pymodule_export]
     use crate::job::CancelToken;
+    #[pymodule_export]
+    use crate::origins::Origins;
     #[pymodule_export]
     use crate::remesh::{Remeshed, remesh};
     #[pymodule_export]

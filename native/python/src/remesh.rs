@@ -1,13 +1,15 @@
 //! `orbflow_native.remesh`.
 
 use glam::DVec3;
-use numpy::{PyArray1, PyArray2};
+use numpy::{PyArray1, PyArray2, PyArray3};
 use orbflow_geometry::pipeline::{self, Input, Settings, Style};
 use orbflow_geometry::score;
 use pyo3::prelude::*;
 
 use crate::arrays::{self, MeshArrays};
 use crate::job::{CancelToken, Job};
+use crate::origins::Origins;
+use crate::predictor::predictor;
 use crate::report;
 
 /// A new mesh and how it came about.
@@ -23,6 +25,14 @@ pub struct Remeshed {
     material_index: Option<Py<PyArray1<i32>>>,
     /// `(V, 3) float32`: where each vertex lies on the unit sphere of its part.
     sphere: Py<PyArray2<f32>>,
+    /// `(M, 2) int32`: the edges, by their ends, that lie on edges to be carried.
+    carried_edges: Py<PyArray2<i32>>,
+    /// `(M,) int32`: on which of the edges to be carried each of them lies.
+    carried_from: Py<PyArray1<i32>>,
+    /// What of the input every element comes from; `None` without `cut_edges`.
+    origins: Option<Py<Origins>>,
+    /// `(N, 3, 3) float32`: of crosses of the field the place and two arms, half as long as edges.
+    crosses: Py<PyArray3<f32>>,
     /// What is told of the run.
     report: Py<PyAny>,
 }
@@ -34,8 +44,13 @@ pub struct Remeshed {
 /// How quads flow: `follow_shape` from 0 (smooth loops) to 1 (edges along the curvature), `adaptivity`
 /// from 0 (quads of one size) to 1 (much smaller where the surface is bent).
 /// Edges at which the surface turns by more than `sharp_angle` degrees, and the `marked_edges`
-/// `(E, 2) int32`, get edges of the result along them. `mirror` makes flowing quads their own image
+/// `(E, 2) int32`, get edges of the result along them. `density` `(V,) float32` goes from 0 to 1:
+/// where it is 1, edges of flowing quads are about half as long as where it is 0. `mirror` makes flowing quads their own image
 /// across "x", "y" or "z", or with "auto" across the first in which the mesh is symmetric.
+/// Edges of the result that lie on `carried_edges` `(E, 2) int32` are told, so that marks on these can
+/// be carried over. With `cut_edges` `(E, 2) int32`, along which data on corners is cut as texture
+/// coordinates are along seams, the result tells where each of its elements comes from. `predictor` is "solver", or "network" with `weights`: the bytes of a file that
+/// `orbflow train` wrote, or its path. `n_crosses` is how many crosses of the field to tell at most.
 /// `score_samples` is how many points of each surface the score looks at; 0 makes no score.
 /// `progress` is called on the calling thread, at most 20 times a second, with the name of the step
 /// and the share of the work that is done. The same input and settings give the same bytes.
@@ -44,9 +59,10 @@ pub struct Remeshed {
 #[pyfunction]
 #[pyo3(signature = (
     positions, loop_start, corner_vert, *, faces=2000, kind="quads", primitive=None,
-    follow_shape=0.5, adaptivity=0.5, sharp_angle=40.0, mirror="off", predictor="solver", threads=0,
-    seed=0, scale=None, score_samples=10_000, material_index=None, marked_edges=None, reduced=None,
-    progress=None, cancel=None,
+    follow_shape=0.5, adaptivity=0.5, sharp_angle=40.0, mirror="off", predictor="solver",
+    weights=None, threads=0, seed=0, scale=None, score_samples=10_000, n_crosses=0,
+    material_index=None, marked_edges=None, carried_edges=None, cut_edges=None, density=None,
+    reduced=None,     progress=None, cancel=None,
 ))]
 #[expect(
     clippy::too_many_arguments,
@@ -65,12 +81,17 @@ pub fn remesh<'py>(
     sharp_angle: f64,
     mirror: &str,
     predictor: &str,
+    weights: Option<&Bound<'py, PyAny>>,
     threads: usize,
     seed: u64,
     scale: Option<(f64, f64, f64)>,
     score_samples: usize,
+    n_crosses: usize,
     material_index: Option<&Bound<'py, PyAny>>,
     marked_edges: Option<&Bound<'py, PyAny>>,
+    carried_edges: Option<&Bound<'py, PyAny>>,
+    cut_edges: Option<&Bound<'py, PyAny>>,
+    density: Option<&Bound<'py, PyAny>>,
     reduced: Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
     progress: Option<Bound<'py, PyAny>>,
     cancel: Option<&CancelToken>,
@@ -85,7 +106,11 @@ pub fn remesh<'py>(
     let materials = material_index
         .map(|array| arrays::column(array, "material_index", "(F,)"))
         .transpose()?;
-    let marked = marked_edges.map(arrays::vertex_pairs).transpose()?;
+    let pairs = |array: Option<_>, kind| array.map(|a| arrays::vertex_pairs(a, kind)).transpose();
+    let marked = pairs(marked_edges, "marked")?;
+    let carried = pairs(carried_edges, "carried")?;
+    let cuts = pairs(cut_edges, "cut")?;
+    let density = density.map(arrays::densities).transpose()?;
     let reduced = reduced
         .map(|(points, triangles)| arrays::triangles(&points, &triangles, scale))
         .transpose()?;
@@ -103,20 +128,24 @@ pub fn remesh<'py>(
         mirror: report::choice("mirror", mirror)?,
         seed,
         threads,
+        n_crosses,
         score: (score_samples > 0).then(|| score::Settings {
             n_samples: score_samples,
             ..score::Settings::default()
         }),
     };
-    let predictor = report::predictor(predictor)?;
+    let predictor = self::predictor(predictor, weights)?;
     let input = Input {
         mesh: &mesh,
         materials: materials.as_deref(),
         reduced: reduced.as_ref(),
         marked: marked.as_deref().unwrap_or_default(),
+        density: density.as_deref(),
+        carried: carried.as_deref().unwrap_or_default(),
+        cuts: cuts.as_deref(),
     };
     let remeshed = Job::new(progress, cancel).run(py, |progress| {
-        pipeline::remesh(input, &settings, &predictor, progress)
+        pipeline::remesh(input, &settings, predictor.as_ref(), progress)
     })?;
     Remeshed::new(py, &remeshed, scale)
 }
@@ -124,12 +153,18 @@ pub fn remesh<'py>(
 impl Remeshed {
     fn new(py: Python<'_>, remeshed: &pipeline::Remeshed, scale: DVec3) -> PyResult<Self> {
         let materials = remeshed.materials.as_deref();
+        let origins = remeshed.origins.as_ref();
+        let origins = origins.map(|origins| Py::new(py, Origins::new(py, origins)?));
         Ok(Self {
             positions: arrays::point_array(py, remeshed.mesh.positions(), scale.recip())?,
             loop_start: arrays::start_array(py, &remeshed.mesh),
             corner_vert: arrays::corner_array(py, &remeshed.mesh),
             material_index: materials.map(|values| PyArray1::from_slice(py, values).unbind()),
             sphere: arrays::point_array(py, &remeshed.sphere, DVec3::ONE)?,
+            carried_edges: arrays::end_array(py, &remeshed.carried)?,
+            carried_from: arrays::from_array(py, &remeshed.carried),
+            origins: origins.transpose()?,
+            crosses: arrays::cross_array(py, &remeshed.crosses, scale.recip())?,
             report: report::dict(py, &remeshed.report)?.unbind(),
         })
     }

@@ -1,6 +1,5 @@
 //! Reports of the core as dictionaries, and words of Python as settings of the core.
 
-use orbflow_geometry::embed::{OffsetPredictor, Solver};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use serde::Serialize;
@@ -21,17 +20,4 @@ pub fn dict<'py>(py: Python<'py>, report: &impl Serialize) -> PyResult<Bound<'py
 pub fn choice<T: DeserializeOwned>(name: &str, word: &str) -> PyResult<T> {
     T::deserialize(word.into_deserializer())
         .map_err(|error: value::Error| PyValueError::new_err(format!("{name}: {error}")))
-}
-
-/// The predictor of a name.
-///
-/// # Errors
-/// `ValueError` with the names there are.
-pub fn predictor(name: &str) -> PyResult<impl OffsetPredictor> {
-    match name {
-        "solver" => Ok(Solver::default()),
-        _ => Err(PyValueError::new_err(format!(
-            "predictor: unknown name `{name}`, expected `solver`"
-        ))),
-    }
 }

@@ -1,5 +1,5 @@
-//! A proposal for a coarse level of the hierarchy: mended there, where few vertices are, then grown
-//! as the solver grows its own map.
+//! A proposal for a coarse level of the hierarchy: mended and relaxed there, where few vertices are,
+//! then grown by a solver in a hurry.
 
 use super::growth::{GrowError, Growth};
 use super::partial::Partial;
@@ -62,7 +62,9 @@ fn grow(
         partial.insert(collapse, point);
     }
     let mut growth = Growth::new(partial, hierarchy.mesh(), Stiffness::Shape, progress)?;
-    let grown = Solver::default().grow(hierarchy, &mut growth, progress);
+    let solver = Solver::BRISK;
+    growth.sweeps(solver.limits(order.len()), progress)?;
+    let grown = solver.grow(hierarchy, &mut growth, progress);
     valid.n_relaxations += growth.n_relaxations;
     match grown {
         Err(GrowError::Cancelled(cancelled)) => Err(cancelled),

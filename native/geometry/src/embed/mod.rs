@@ -47,6 +47,11 @@ pub trait OffsetPredictor: Sync {
     /// The name that reports carry.
     fn name(&self) -> &str;
 
+    /// How its maps are finished, unless the caller wants it otherwise.
+    fn finish(&self) -> Settings {
+        Settings::default()
+    }
+
     /// Proposes a point for every vertex, or for those of a coarse level.
     ///
     /// # Errors
@@ -64,7 +69,7 @@ pub struct Proposal {
     /// A direction for every proposed vertex; of any length, x − offset.
     pub sphere: VertexMap<DVec3>,
     /// How many vertices are proposed, counted from the coarsest
-    /// ([`coarse_to_fine`](CollapseHierarchy::coarse_to_fine)). The solver grows the others.
+    /// ([`coarse_to_fine`](CollapseHierarchy::coarse_to_fine)). [`Solver::BRISK`] grows the others.
     pub n_proposed: usize,
     /// How many relaxations of single vertices the predictor did.
     pub n_relaxations: u64,
@@ -91,6 +96,15 @@ pub struct Settings {
     pub max_sweeps: u32,
     /// They end when one lowers the energy by less than this share.
     pub tolerance: f64,
+}
+
+impl Settings {
+    /// Ends where a sweep is not worth its time any more: within a percent or two of the lowest
+    /// energy, for a third of the sweeps.
+    pub const BRISK: Self = Self {
+        max_sweeps: 20,
+        tolerance: 1e-2,
+    };
 }
 
 impl Default for Settings {

@@ -2,9 +2,12 @@
 
 use super::growth::{GrowError, Growth, Limits};
 use super::rest::Stiffness;
-use super::{OffsetPredictor, PredictError, Proposal};
+use super::{OffsetPredictor, PredictError, Proposal, Settings};
 use crate::hierarchy::CollapseHierarchy;
 use crate::progress::Progress;
+
+/// From so many vertices on a level is fine.
+const FINE: usize = 1_000;
 
 /// The predictor that needs no training: it undoes the collapses on the sphere, coarse to fine,
 /// and relaxes in between, so that low frequencies are settled while there are few vertices.
@@ -16,6 +19,8 @@ pub struct Solver {
     pub max_fine_sweeps: u32,
     /// The sweeps of a level end when one lowers the energy by less than this share.
     pub tolerance: f64,
+    /// Levels of more vertices have no sweeps: those that finish the map must do.
+    pub finest_swept: usize,
 }
 
 impl Default for Solver {
@@ -24,6 +29,7 @@ impl Default for Solver {
             max_coarse_sweeps: 30,
             max_fine_sweeps: 10,
             tolerance: 5e-4,
+            finest_swept: usize::MAX,
         }
     }
 }
@@ -31,6 +37,14 @@ impl Default for Solver {
 impl OffsetPredictor for Solver {
     fn name(&self) -> &'static str {
         "solver"
+    }
+
+    fn finish(&self) -> Settings {
+        if self.finest_swept == usize::MAX {
+            Settings::default()
+        } else {
+            Settings::BRISK
+        }
     }
 
     fn propose(
@@ -43,6 +57,31 @@ impl OffsetPredictor for Solver {
 }
 
 impl Solver {
+    /// A solver in a hurry: it settles the low frequencies on the levels that are cheap, and leaves
+    /// the high ones to the sweeps that finish the map.
+    ///
+    /// Far fewer swept levels leave low frequencies to the finest one, where a sweep costs twenty
+    /// times as much; more of them take longer than they save.
+    pub const BRISK: Self = Self {
+        max_coarse_sweeps: 30,
+        max_fine_sweeps: 10,
+        tolerance: 5e-4,
+        finest_swept: 500,
+    };
+
+    /// How the level of so many vertices is relaxed.
+    pub(super) fn limits(self, n_vertices: usize) -> Limits {
+        let max_sweeps = if n_vertices < FINE {
+            self.max_coarse_sweeps
+        } else {
+            self.max_fine_sweeps
+        };
+        Limits {
+            max_sweeps,
+            tolerance: self.tolerance,
+        }
+    }
+
     /// Proposes a map in a metric of choice.
     pub(super) fn propose_as(
         self,
@@ -90,18 +129,10 @@ impl Solver {
             }
             growth.insert_all(&collapses, progress)?;
             let n_there = growth.partial.n_there();
-            let (factor, max_sweeps) = if n_there < 1_000 {
-                (1.15, self.max_coarse_sweeps)
-            } else {
-                (1.3, self.max_fine_sweeps)
-            };
-            if n_there as f64 >= factor * n_relaxed as f64 && n_there < n_vertices {
-                let tolerance = self.tolerance;
-                let limits = Limits {
-                    max_sweeps,
-                    tolerance,
-                };
-                growth.sweeps(limits, progress)?;
+            let factor = if n_there < FINE { 1.15 } else { 1.3 };
+            let has_grown = n_there as f64 >= factor * n_relaxed as f64;
+            if has_grown && n_there < n_vertices && n_there <= self.finest_swept {
+                growth.sweeps(self.limits(n_there), progress)?;
                 n_relaxed = n_there;
             }
             progress.at(n_there as f64 / n_vertices as f64)?;

@@ -104,6 +104,19 @@ impl Doubled {
         carried
     }
 
+    /// Values at the vertices of the mesh that was doubled, found again at those of the positive side
+    /// and at their images.
+    pub fn carried_values(&self, old: &TriangleMesh, values: &VertexMap<f64>) -> VertexMap<f64> {
+        let mut carried = VertexMap::filled(self.mesh.n_vertices(), 0.0);
+        for (v, &[a, b]) in self.mesh.vertex_ids().zip(&self.sources) {
+            let away = |end| old.position(end).distance(self.mesh.position(v));
+            let share = away(a) / (away(a) + away(b)).max(f64::MIN_POSITIVE);
+            carried[v] = values[a] + (values[b] - values[a]) * share;
+            carried[self.images[v]] = carried[v];
+        }
+        carried
+    }
+
     /// Whether a face is one of the positive side.
     pub fn is_positive(&self, face: FaceId) -> bool {
         face.index() < self.mesh.n_faces() / 2
@@ -205,6 +218,22 @@ mod tests {
         let carried = doubled.carried(&mesh, &ridge(&mesh));
         assert_eq!(carried, ridge(doubled.mesh()));
         assert!(carried.iter().any(|&is_on| is_on));
+    }
+
+    #[test]
+    fn values_are_found_on_both_sides_where_the_positive_one_has_them() {
+        let mesh = shapes::cuboid(5);
+        let moved = mesh.positions().iter().map(|&p| p + DVec3::X * 0.1);
+        let mesh = mesh.with_positions(moved.collect());
+        // Between the ends of an edge it is linear, as what is carried.
+        let height = |p: &DVec3| 0.5 + p.y - 0.3 * p.z;
+        let values = mesh.positions().iter().map(height).collect();
+        let doubled = double(&mesh, 0, 0.0).unwrap();
+        let carried = doubled.carried_values(&mesh, &values);
+        for (v, value) in carried.iter_ids() {
+            let wanted = height(&doubled.mesh().position(v));
+            assert!((value - wanted).abs() < 1e-9, "{v}: {value} {wanted}");
+        }
     }
 
     #[test]

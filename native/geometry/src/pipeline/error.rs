@@ -30,15 +30,33 @@ pub enum Error {
         /// What was asked for.
         degrees: f64,
     },
-    /// A marked edge names a vertex that does not exist.
-    #[error("marked edge {edge} names vertex {vertex}, but there are {n_vertices} vertices")]
-    MarkedEdge {
+    /// A marked or carried edge names a vertex that does not exist.
+    #[error("{kind} edge {edge} names vertex {vertex}, but there are {n_vertices} vertices")]
+    EdgeOutOfRange {
+        /// Which kind of edge.
+        kind: &'static str,
         /// Which edge.
         edge: usize,
         /// What it names.
         vertex: VertexId,
         /// How many vertices there are.
         n_vertices: usize,
+    },
+    /// Not one density per vertex.
+    #[error("{n_values} densities for {n_vertices} vertices")]
+    DensityCount {
+        /// How many densities.
+        n_values: usize,
+        /// How many vertices.
+        n_vertices: usize,
+    },
+    /// A density is out of range.
+    #[error("vertex {vertex} has the density {value}; it goes from 0 to 1")]
+    DensityOutOfRange {
+        /// The first such vertex.
+        vertex: VertexId,
+        /// What was asked for there.
+        value: f64,
     },
     /// The primitive has other polygons than were asked for.
     #[error("the {} primitive makes {}, but {} were asked for", primitive.name(), primitive.kind().name(), kind.name())]

@@ -4,7 +4,8 @@ use serde::Serialize;
 
 use super::Settings;
 use super::clock::Clock;
-use super::mirror;
+use super::crosses::{self, Cross};
+use super::{density, mirror};
 use crate::deform::{self, Deformed, Flowing, Target};
 use crate::embed::{self, Covered};
 use crate::measure::area_vector;
@@ -90,6 +91,8 @@ pub struct FlowedPart {
     pub n_missed: usize,
     pub sphere: sphere::Report,
     pub flowed: Flowed,
+    /// As many crosses of the field as were asked for.
+    pub crosses: Vec<Cross>,
     /// Whether it is its own image in the plane; an error says why not, none was asked.
     pub mirrored: Option<Result<(), String>>,
 }
@@ -106,8 +109,18 @@ impl FlowedPart {
 pub struct Asked<'a> {
     pub n_quads: usize,
     pub settings: &'a Settings,
+    /// The density at the vertices of the target, where any is asked for.
+    pub density: Option<&'a VertexMap<f64>>,
     /// The axis across the plane of symmetry, which goes through the origin.
     pub axis: Option<usize>,
+}
+
+impl Asked<'_> {
+    /// How many crosses of all that are asked for fall to the part, by its quads.
+    fn n_crosses(&self) -> usize {
+        let settings = self.settings;
+        (settings.n_crosses * self.n_quads).div_ceil(settings.faces)
+    }
 }
 
 /// An even surface and what its quads are fitted to.
@@ -119,6 +132,7 @@ struct Ground<'a> {
     doubled: Option<Doubled>,
     sphere: sphere::Report,
     target: &'a Target,
+    asked: Asked<'a>,
     style: flow::Settings,
 }
 
@@ -148,6 +162,7 @@ pub fn flow_part(
         doubled: None,
         sphere,
         target,
+        asked,
         style: settings.flow(n_quads),
     };
     match asked.axis {
@@ -241,7 +256,9 @@ impl Ground<'_> {
         progress: &Progress<'_>,
     ) -> Result<Result<FlowedPart, String>, Cancelled> {
         let part = progress.part("flow", 0.0, 0.75);
-        let settings = attempt.settings(&self.style);
+        let mut settings = attempt.settings(&self.style);
+        let weights = |values| density::weights(values, self.target, self.even.mesh());
+        settings.sizes.weights = self.asked.density.map(weights);
         let found = clock.step("flow", || told(self.find(&settings, &part)))?;
         let (found, covered) = match found {
             Ok(found) => found,
@@ -271,6 +288,7 @@ impl Ground<'_> {
             n_missed: self.n_missed(&deformed.mesh),
             deformed,
             sphere: self.sphere.clone(),
+            crosses: crosses::some(self.even.mesh(), &found, self.asked.n_crosses()),
             flowed: Flowed::Used {
                 attempt,
                 flow: found.report,

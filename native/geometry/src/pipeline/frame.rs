@@ -52,6 +52,25 @@ impl Prepared {
         Ok((prepared, plane))
     }
 
+    /// The polygon of the input that a triangle is a piece of.
+    pub fn input_face(&self, face: FaceId) -> FaceId {
+        self.source[face]
+    }
+
+    /// The corner of that polygon, by its place among all corners of the input, where a corner of the
+    /// triangle is; the nearest where the polygon was cut from its centre.
+    pub fn input_corner(&self, input: &PolygonMesh, face: FaceId, corner: usize) -> u32 {
+        let place = self.mesh.triangle(face)[corner];
+        let polygon = self.source[face];
+        let corners = input.face(polygon).iter().map(|&v| input.position(v));
+        let away =
+            |p: DVec3| ((p - self.frame.centre) / self.frame.diagonal - place).length_squared();
+        let nearest = corners
+            .enumerate()
+            .min_by(|a, b| away(a.1).total_cmp(&away(b.1)));
+        input.starts()[polygon.index()] + nearest.map_or(0, |(i, _)| i as u32)
+    }
+
     /// The material of each triangle.
     pub fn materials(&self, of_faces: &[i32]) -> Vec<i32> {
         self.source
@@ -59,6 +78,12 @@ impl Prepared {
             .map(|&face| of_faces[face.index()])
             .collect()
     }
+}
+
+/// A place as bits, the same for both zeros: what finds a vertex again after cleaning, which welds
+/// and renumbers vertices but moves none.
+pub fn bits(place: DVec3) -> [u64; 3] {
+    (place + DVec3::ZERO).to_array().map(f64::to_bits)
 }
 
 /// A shift and a scale, to be undone at the end.
@@ -92,6 +117,11 @@ impl Frame {
             .iter()
             .map(|&p| (p - self.centre) / self.diagonal)
             .collect()
+    }
+
+    /// A vector back from the frame.
+    pub fn grow(&self, vector: DVec3) -> DVec3 {
+        vector * self.diagonal
     }
 
     /// Back from the frame.

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::crosses::Cross;
 use super::part::PartResult;
 use super::report::PartReport;
 use crate::embed;
@@ -11,6 +12,9 @@ use crate::mesh::{PolygonMesh, VertexId};
 pub struct Joined {
     pub mesh: PolygonMesh,
     pub sphere: Vec<DVec3>,
+    /// The edges that lie along sharp or marked ones.
+    pub features: Vec<[VertexId; 2]>,
+    pub crosses: Vec<Cross>,
     pub embedding: embed::Report,
     pub parts: Vec<PartReport>,
 }
@@ -21,6 +25,7 @@ pub fn join(results: Vec<PartResult>) -> Joined {
     let embeddings: Vec<_> = results.iter().map(|r| r.report.embedding.clone()).collect();
     let mut positions = Vec::new();
     let mut sphere = Vec::new();
+    let (mut features, mut crosses) = (Vec::new(), Vec::new());
     let mut starts = vec![0];
     let mut corners = Vec::new();
     let mut parts = Vec::with_capacity(results.len());
@@ -40,12 +45,17 @@ pub fn join(results: Vec<PartResult>) -> Joined {
         );
         positions.extend_from_slice(result.mesh.positions());
         sphere.extend(result.sphere);
+        let named = |ends: &[VertexId; 2]| ends.map(|v| VertexId(v.0 + first_vertex));
+        features.extend(result.features.iter().map(named));
+        crosses.extend(result.crosses);
         parts.push(result.report);
     }
     let mesh = PolygonMesh::new(positions, starts, corners).expect("valid meshes make a valid one");
     Joined {
         mesh,
         sphere,
+        features,
+        crosses,
         embedding: join_embeddings(&embeddings, &areas),
         parts,
     }

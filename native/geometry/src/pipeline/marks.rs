@@ -4,32 +4,22 @@ use std::collections::HashSet;
 
 use glam::DVec3;
 
-use super::frame::Frame;
+use super::frame::{Frame, bits};
 use super::{Error, Input};
-use crate::mesh::{HalfedgeMap, Id, TriangleMesh};
+use crate::mesh::{HalfedgeMap, Id, PolygonMesh, TriangleMesh, VertexId};
 
-/// Edges known by the positions of their ends: cleaning welds, splits and renumbers vertices, but
-/// moves none.
+/// Edges known by the places of their ends.
 #[derive(Debug, Default)]
 pub struct Marks(HashSet<[[u64; 3]; 2]>);
 
 impl Marks {
-    /// The marked edges of the input, in the frame of work.
-    pub fn new(input: &Input<'_>, frame: &Frame) -> Result<Self, Error> {
-        let n_vertices = input.mesh.n_vertices();
-        let mut edges = HashSet::with_capacity(input.marked.len());
-        for (edge, ends) in input.marked.iter().enumerate() {
-            if let Some(&vertex) = ends.iter().find(|v| v.index() >= n_vertices) {
-                return Err(Error::MarkedEdge {
-                    edge,
-                    vertex,
-                    n_vertices,
-                });
-            }
-            let ends = frame.enter(&ends.map(|v| input.mesh.position(v)));
-            edges.insert(key(ends[0], ends[1]));
-        }
-        Ok(Self(edges))
+    /// Edges of the input, in the frame of work.
+    pub fn new((mesh, edges): (&PolygonMesh, &[[VertexId; 2]]), frame: &Frame) -> Self {
+        let key = |ends: &[VertexId; 2]| {
+            let ends = frame.enter(&ends.map(|v| mesh.position(v)));
+            key(ends[0], ends[1])
+        };
+        Self(edges.iter().map(key).collect())
     }
 
     /// The marked edges of a part, on both sides of each.
@@ -42,17 +32,41 @@ impl Marks {
     }
 }
 
+impl Input<'_> {
+    /// Whether all edges have their ends.
+    pub(super) fn check_edges(&self) -> Result<(), Error> {
+        let n_vertices = self.mesh.n_vertices();
+        let cuts = self.cuts.unwrap_or_default();
+        let all = [
+            ("marked", self.marked),
+            ("carried", self.carried),
+            ("cut", cuts),
+        ];
+        for (kind, edges) in all {
+            for (edge, ends) in edges.iter().enumerate() {
+                if let Some(&vertex) = ends.iter().find(|v| v.index() >= n_vertices) {
+                    return Err(Error::EdgeOutOfRange {
+                        kind,
+                        edge,
+                        vertex,
+                        n_vertices,
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
 /// Two ends as bits, in an order that does not depend on theirs.
 fn key(a: DVec3, b: DVec3) -> [[u64; 3]; 2] {
-    // Adding zero makes one zero of both.
-    let [a, b] = [a, b].map(|p| (p + DVec3::ZERO).to_array().map(f64::to_bits));
+    let [a, b] = [a, b].map(bits);
     [a.min(b), a.max(b)]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{PolygonMesh, VertexId, bounds};
     use crate::pipeline::frame::Prepared;
     use crate::progress::Progress;
     use crate::shapes;
@@ -71,15 +85,9 @@ mod tests {
     fn marked_edges_are_found_after_welding() {
         let mesh = soup();
         let marked = [[VertexId(0), VertexId(1)], [VertexId(8), VertexId(6)]];
-        let input = Input {
-            marked: &marked,
-            ..Input::new(&mesh)
-        };
         let prepared = Prepared::new(&mesh, &Progress::none()).unwrap();
         assert!(prepared.mesh.n_vertices() < mesh.n_vertices());
-        let on = Marks::new(&input, &prepared.frame)
-            .unwrap()
-            .on(&prepared.mesh);
+        let on = Marks::new((&mesh, &marked), &prepared.frame).on(&prepared.mesh);
         assert_eq!(on.iter().filter(|&&is_marked| is_marked).count(), 4);
     }
 
@@ -90,7 +98,7 @@ mod tests {
             marked: &[[VertexId(0), VertexId(1)], [VertexId(2), VertexId(900)]],
             ..Input::new(&mesh)
         };
-        let error = Marks::new(&input, &Frame::new(bounds(mesh.positions()))).unwrap_err();
+        let error = input.check_edges().unwrap_err();
         let text = format!(
             "marked edge 1 names vertex 900, but there are {} vertices",
             mesh.n_vertices()

@@ -8,23 +8,31 @@
 //! Every part is a closed component of genus 0 and gets its share of the faces by area. The map is
 //! made on a decimated mesh; the result is laid on the part at full resolution.
 
+mod carried;
 mod clock;
+mod crosses;
+mod density;
 mod error;
 mod flow;
 mod frame;
 mod join;
 mod marks;
 mod mirror;
+mod origins;
 mod part;
 mod report;
 mod settings;
 mod split;
 mod verbs;
 
+pub use crate::transfer::CarriedEdge;
+pub use carried::CarriedReport;
 pub use clock::{Step, peak_memory_mb};
+pub use crosses::Cross;
 pub use error::Error;
 pub use flow::{Attempt, Flowed};
 pub use mirror::{Mirror, Plane, Through};
+pub use origins::{Origin, Origins};
 pub use report::{Mirrored, PartReport, Reduced, Report};
 pub use settings::{Kind, MAX_FACES, MIN_FACES, Primitive, Settings, Style};
 pub use verbs::{Decimated, EmbedReport, EmbeddedParts, decimate, embed};
@@ -38,6 +46,7 @@ use crate::progress::{Cancelled, Progress};
 use crate::score::{self, Score};
 use crate::{measure, transfer};
 use clock::Clock;
+use density::Density;
 use frame::Prepared;
 use join::Joined;
 use marks::Marks;
@@ -60,6 +69,14 @@ pub struct Input<'a> {
     /// Edges of the mesh, by their ends, along which the result is to have edges however flat the
     /// surface is there.
     pub marked: &'a [[VertexId; 2]],
+    /// How small the quads that flow are to be at each of its vertices: from 0, as usual, to 1, with
+    /// edges about half as long. The number of faces stays what was asked for.
+    pub density: Option<&'a [f64]>,
+    /// Edges of the mesh that are to be found again on edges of the result, where these lie on them.
+    pub carried: &'a [[VertexId; 2]],
+    /// Edges of the mesh along which data on corners is cut, as texture coordinates are along seams.
+    /// With them, none or some, the result says where each of its elements comes from.
+    pub cuts: Option<&'a [[VertexId; 2]]>,
 }
 
 impl<'a> Input<'a> {
@@ -70,6 +87,9 @@ impl<'a> Input<'a> {
             materials: None,
             reduced: None,
             marked: &[],
+            density: None,
+            carried: &[],
+            cuts: None,
         }
     }
 }
@@ -83,6 +103,13 @@ pub struct Remeshed {
     pub materials: Option<Vec<i32>>,
     /// The point of the unit sphere of each new vertex, each part on a sphere of its own.
     pub sphere: Vec<DVec3>,
+    /// The edges that lie on edges of the input that were to be carried.
+    pub carried: Vec<CarriedEdge>,
+    /// What of the input every element comes from, where that was asked for.
+    pub origins: Option<Origins>,
+    /// Crosses of the field that the quads follow, as many as were asked for or fewer; of quads that
+    /// flow alone.
+    pub crosses: Vec<Cross>,
     /// What is told of the run.
     pub report: Report,
 }
@@ -116,21 +143,23 @@ fn run(
     let stage = progress.part("clean", 0.0, 0.02);
     let facing = || Prepared::facing(input.mesh, settings.mirror, &stage);
     let (prepared, plane) = clock.step("clean", facing)?;
-    let marks = Marks::new(&input, &prepared.frame)?;
+    let marks = Marks::new((input.mesh, input.marked), &prepared.frame);
+    let density = Density::new(&input, &prepared.frame);
     let joined = run_parts(
-        (&prepared, &marks),
+        (&prepared, &marks, &density),
         input.reduced,
         (settings, plane),
         (predictor, progress),
         &mut clock,
     )?;
     let stage = progress.part("transfer", 0.9, 0.92);
-    let materials = input.materials.map(|of_faces| {
-        clock.step("transfer", || {
-            transfer_materials(&prepared, of_faces, &joined.mesh, &stage)
-        })
-    });
-    let materials = materials.transpose()?;
+    let Carried {
+        materials,
+        edges: (carried, carried_report),
+        origins,
+    } = clock.step("transfer", || {
+        Carried::new(&input, (&prepared, plane), &joined, &stage)
+    })?;
     let mesh = joined
         .mesh
         .with_positions(prepared.frame.leave(joined.mesh.positions()));
@@ -151,6 +180,7 @@ fn run(
         plane,
         embedding: joined.embedding,
         parts: joined.parts,
+        carried: carried_report,
         score,
         score_refused,
         steps: clock.into_steps(),
@@ -161,13 +191,16 @@ fn run(
         mesh,
         materials,
         sphere: joined.sphere,
+        carried,
+        origins,
+        crosses: crosses::leave(joined.crosses, &prepared.frame),
         report,
     })
 }
 
 /// Does every part by itself and joins them.
 fn run_parts(
-    (prepared, marks): (&Prepared, &Marks),
+    (prepared, marks, density): (&Prepared, &Marks, &Density),
     reduced: Option<&PolygonMesh>,
     (settings, plane): (&Settings, Option<Plane>),
     (predictor, progress): (&dyn OffsetPredictor, &Progress<'_>),
@@ -175,7 +208,8 @@ fn run_parts(
 ) -> Result<Joined, Error> {
     let parts = clock.step("split", || split::split(&prepared.mesh, progress))?;
     progress.check()?;
-    let shares = split::share(&parts, settings.faces, settings.kind.fewest_faces());
+    let amounts: Vec<f64> = parts.iter().map(|part| density.amount(part)).collect();
+    let shares = split::share(&amounts, settings.faces, settings.kind.fewest_faces());
     let reduced = reduced.filter(|_| parts.len() == 1);
     let reduced = reduced.map(|r| r.with_positions(prepared.frame.enter(r.positions())));
     let total = prepared.mesh.n_faces();
@@ -202,6 +236,7 @@ fn run_parts(
                 mirror: (role, plane),
                 reduced: reduced.as_ref(),
                 marks,
+                density,
             },
         };
         results.push(Some(job.run(clock, &progress)?));
@@ -221,6 +256,42 @@ fn told(scored: Result<Score, score::Error>) -> Result<(Option<Score>, Option<St
         Ok(score) => Ok((Some(score), None)),
         Err(score::Error::Cancelled(cancelled)) => Err(cancelled),
         Err(error) => Ok((None, Some(error.to_string()))),
+    }
+}
+
+/// The artist's data on the result.
+struct Carried {
+    materials: Option<Vec<i32>>,
+    edges: (Vec<CarriedEdge>, Option<CarriedReport>),
+    origins: Option<Origins>,
+}
+
+impl Carried {
+    fn new(
+        input: &Input<'_>,
+        (prepared, plane): (&Prepared, Option<Plane>),
+        joined: &Joined,
+        progress: &Progress<'_>,
+    ) -> Result<Self, Cancelled> {
+        let edges = carried::carried(input, (&prepared.frame, plane), joined, progress)?;
+        if input.materials.is_none() && input.cuts.is_none() {
+            return Ok(Self {
+                materials: None,
+                edges,
+                origins: None,
+            });
+        }
+        let tree = Bvh::build_of_mesh(&prepared.mesh, progress)?;
+        let part = progress.part("", 0.0, 0.5);
+        let materials = input.materials.map(|of_faces| {
+            transfer::materials(&tree, &prepared.materials(of_faces), &joined.mesh, &part)
+        });
+        let part = progress.part("", 0.5, 1.0);
+        Ok(Self {
+            materials: materials.transpose()?,
+            edges,
+            origins: origins::origins(input, (prepared, &tree), &joined.mesh, &part)?,
+        })
     }
 }
 
@@ -248,6 +319,8 @@ fn thread_pool(threads: usize) -> Result<rayon::ThreadPool, Error> {
 
 impl Input<'_> {
     fn check(&self) -> Result<(), Error> {
+        self.check_edges()?;
+        self.check_density()?;
         let n_faces = self.mesh.n_faces();
         match self.materials {
             Some(materials) if materials.len() != n_faces => Err(Error::MaterialCount {

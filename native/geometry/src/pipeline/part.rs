@@ -6,6 +6,8 @@ use glam::DVec3;
 
 use super::Error;
 use super::clock::Clock;
+use super::crosses::Cross;
+use super::density::Density;
 use super::flow::{Asked, Flowed, flow_part};
 use super::marks::Marks;
 use super::mirror::{self, Faced, Plane, Role, face};
@@ -13,7 +15,7 @@ use super::report::{Mirrored, PartReport, Reduced};
 use super::settings::{Kind, Primitive, Settings};
 use crate::embed::{Embedded, OffsetPredictor};
 use crate::hierarchy::CollapseHierarchy;
-use crate::mesh::{HalfedgeMap, PolygonMesh, TriangleMesh, VertexId};
+use crate::mesh::{HalfedgeMap, PolygonMesh, TriangleMesh, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
 use crate::sphere::Adaptive;
 use crate::sphere_map::SphereMap;
@@ -42,12 +44,16 @@ pub struct Wanted<'a> {
     /// The part as somebody else reduced it.
     pub reduced: Option<&'a PolygonMesh>,
     pub marks: &'a Marks,
+    pub density: &'a Density,
 }
 
 /// What has become of a part.
 pub struct PartResult {
     pub mesh: PolygonMesh,
     pub sphere: Vec<DVec3>,
+    /// The edges that lie along sharp or marked ones.
+    pub features: Vec<[VertexId; 2]>,
+    pub crosses: Vec<Cross>,
     /// The area of the part, the weight of its figures.
     pub area: f64,
     pub report: PartReport,
@@ -63,13 +69,14 @@ impl PartJob<'_> {
     pub fn run(self, clock: &mut Clock, progress: &Progress<'_>) -> Result<PartResult, Error> {
         let Self { part, wanted } = self;
         let (n_input_faces, area) = (part.n_faces(), measure::total_area(&part));
-        let marked = wanted.marks.on(&part);
+        let (marked, density) = (wanted.marks.on(&part), wanted.density.on(&part));
         let Faced {
             mesh: part,
             marked,
+            density,
             axis,
             refused,
-        } = face((part, marked), wanted.mirror);
+        } = face((part, marked, density), wanted.mirror);
         let stage = progress.part("decimate", 0.0, 0.2);
         let reduction = clock.step("decimate", || wanted.reduce((&part, axis), &stage))?;
         let stage = progress.part("embed", 0.2, 0.5);
@@ -82,7 +89,7 @@ impl PartJob<'_> {
         let target = clock.step("deform", || wanted.target((part, &marked), progress))?;
         let stage = progress.part("", 0.5, 1.0);
         let start = (&hierarchy, embedded.map);
-        let made = wanted.make(start, (&target, axis), clock, &stage)?;
+        let made = wanted.make(start, (&target, density.as_ref(), axis), clock, &stage)?;
         let report = PartReport {
             n_input_faces,
             n_asked_faces: wanted.n_faces,
@@ -98,6 +105,8 @@ impl PartJob<'_> {
         Ok(PartResult {
             mesh: made.deformed.mesh,
             sphere: made.deformed.sphere,
+            features: made.deformed.features,
+            crosses: made.crosses,
             area,
             report,
         })
@@ -110,7 +119,7 @@ impl Wanted<'_> {
     fn make(
         &self,
         (hierarchy, map): (&CollapseHierarchy, SphereMap),
-        (target, axis): (&deform::Target, Option<usize>),
+        (target, density, axis): (&deform::Target, Option<&VertexMap<f64>>, Option<usize>),
         clock: &mut Clock,
         progress: &Progress<'_>,
     ) -> Result<Made, Error> {
@@ -120,6 +129,7 @@ impl Wanted<'_> {
             let wanted = Asked {
                 n_quads: self.n_faces,
                 settings: self.settings,
+                density,
                 axis,
             };
             match flow_part(&map, target, wanted, clock, &progress.part("", 0.0, 0.9))? {
@@ -129,6 +139,7 @@ impl Wanted<'_> {
                         flow: Some(part.flowed),
                         mirrored: part.mirrored.map(told),
                         sphere: Some(part.sphere),
+                        crosses: part.crosses,
                     });
                 }
                 Err(reason) => flow = Some(Flowed::Refused { reason }),
@@ -149,6 +160,7 @@ impl Wanted<'_> {
             flow,
             mirrored: axis.map(|_| told(only_flow())),
             sphere: placed.report,
+            crosses: Vec::new(),
         })
     }
 
@@ -254,6 +266,7 @@ struct Made {
     flow: Option<Flowed>,
     mirrored: Option<Mirrored>,
     sphere: Option<sphere::Report>,
+    crosses: Vec<Cross>,
 }
 
 fn told(mirrored: Result<(), String>) -> Mirrored {
@@ -292,11 +305,10 @@ fn embed_hierarchy(
     predictor: &dyn OffsetPredictor,
     progress: &Progress<'_>,
 ) -> Result<Embedded, Error> {
-    let settings = embed::Settings::default();
     Ok(embed::embed(
         hierarchy,
         predictor,
-        &settings,
+        &predictor.finish(),
         &progress.part("", 0.2, 1.0),
     )?)
 }

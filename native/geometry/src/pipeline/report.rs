@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::carried::CarriedReport;
 use super::clock::Step;
 use super::flow::Flowed;
 use super::mirror::Plane;
@@ -29,6 +30,8 @@ pub struct Report {
     pub embedding: embed::Report,
     /// Each part, in the order of its first face.
     pub parts: Vec<PartReport>,
+    /// What became of the edges that were to be carried; none where there were none.
+    pub carried: Option<CarriedReport>,
     /// How good the result is; none when it was not asked for or could not be measured.
     pub score: Option<Score>,
     /// Why it could not be measured.

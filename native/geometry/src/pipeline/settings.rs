@@ -138,6 +138,8 @@ pub struct Settings {
     pub seed: u64,
     /// How many threads to use; 0 uses every core. The result does not depend on it.
     pub threads: usize,
+    /// How many crosses of the field to tell, at most; to be shown, the result does not depend on it.
+    pub n_crosses: usize,
     /// How the result is scored; none saves the time. A score without a target takes the number
     /// of faces that was asked for.
     pub score: Option<score::Settings>,
@@ -154,6 +156,7 @@ impl Default for Settings {
             mirror: Mirror::Off,
             seed: 0,
             threads: 0,
+            n_crosses: 0,
             score: None,
         }
     }

@@ -49,16 +49,11 @@ fn refuse_borders(whole: &TriangleMesh) -> Result<(), Error> {
     })
 }
 
-/// Shares `n_faces` among the parts by area; each gets at least `least`.
+/// Shares `n_faces` among parts by their weights; each gets at least `least`.
 ///
 /// The largest remainders are rounded up, so the shares sum to `n_faces` unless the least shares
 /// alone exceed it.
-pub fn share(parts: &[TriangleMesh], n_faces: usize, least: usize) -> Vec<usize> {
-    let areas: Vec<f64> = parts.iter().map(measure::total_area).collect();
-    share_by_weight(&areas, n_faces, least)
-}
-
-fn share_by_weight(weights: &[f64], n_faces: usize, least: usize) -> Vec<usize> {
+pub fn share(weights: &[f64], n_faces: usize, least: usize) -> Vec<usize> {
     let mut shares = vec![least; weights.len()];
     let mut order: Vec<usize> = (0..weights.len()).collect();
     order.sort_by(|&a, &b| weights[a].total_cmp(&weights[b]));
@@ -138,16 +133,11 @@ mod tests {
     }
 
     #[test]
-    fn shares_follow_the_area_sum_up_and_keep_the_least() {
-        assert_eq!(share_by_weight(&[1.0, 3.0], 100, 4), [25, 75]);
-        assert_eq!(
-            share_by_weight(&[1.0, 1e-9, 1.0], 100, 4)
-                .iter()
-                .sum::<usize>(),
-            100
-        );
-        assert_eq!(share_by_weight(&[1.0, 1e-9], 100, 4), [96, 4]);
-        assert_eq!(share_by_weight(&[1.0; 3], 5, 4), [4, 4, 4]);
-        assert_eq!(share_by_weight(&[0.0; 2], 10, 4).iter().sum::<usize>(), 10);
+    fn shares_follow_the_weights_sum_up_and_keep_the_least() {
+        assert_eq!(share(&[1.0, 3.0], 100, 4), [25, 75]);
+        assert_eq!(share(&[1.0, 1e-9, 1.0], 100, 4).iter().sum::<usize>(), 100);
+        assert_eq!(share(&[1.0, 1e-9], 100, 4), [96, 4]);
+        assert_eq!(share(&[1.0; 3], 5, 4), [4, 4, 4]);
+        assert_eq!(share(&[0.0; 2], 10, 4).iter().sum::<usize>(), 10);
     }
 }

@@ -4,13 +4,17 @@
 //! surface belongs to this place of the new one? A [`Source`] answers it, so that materials,
 //! and later texture coordinates, weights and creases, agree about where they come from.
 
+mod edges;
 mod materials;
+mod places;
 
 use glam::DVec3;
 
 use crate::nearest::{Bvh, Closest};
 
+pub use edges::{CarriedEdge, edges};
 pub use materials::materials;
+pub use places::{Places, places};
 
 /// The old surface, asked for the place that belongs to a place of the new one.
 #[derive(Clone, Copy, Debug)]

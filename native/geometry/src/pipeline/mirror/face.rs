@@ -2,7 +2,7 @@
 
 use super::plane::Plane;
 use super::roles::Role;
-use crate::mesh::{HalfedgeMap, TriangleMesh};
+use crate::mesh::{HalfedgeMap, TriangleMesh, VertexMap};
 use crate::mirror::double;
 use crate::pipeline::report::Mirrored;
 
@@ -16,6 +16,8 @@ pub struct Faced {
     pub mesh: TriangleMesh,
     /// Its edges that are marked, on both sides of each.
     pub marked: HalfedgeMap<bool>,
+    /// The density at its vertices, where any is asked for.
+    pub density: Option<VertexMap<f64>>,
     /// The axis across the plane.
     pub axis: Option<usize>,
     /// What is known already of what the report will say.
@@ -26,7 +28,7 @@ pub struct Faced {
 ///
 /// One that is nearly its own image already stays what it is.
 pub fn face(
-    (part, marked): (TriangleMesh, HalfedgeMap<bool>),
+    (part, marked, density): (TriangleMesh, HalfedgeMap<bool>, Option<VertexMap<f64>>),
     (role, plane): (&Role, Option<Plane>),
 ) -> Faced {
     let reason = match (role, plane) {
@@ -34,6 +36,7 @@ pub fn face(
             return Faced {
                 mesh: part,
                 marked,
+                density,
                 axis: Some(plane.axis),
                 refused: None,
             };
@@ -42,6 +45,7 @@ pub fn face(
             Ok(doubled) => {
                 return Faced {
                     marked: doubled.carried(&part, &marked),
+                    density: density.map(|values| doubled.carried_values(&part, &values)),
                     mesh: doubled.into_mesh(),
                     axis: Some(plane.axis),
                     refused: None,
@@ -55,6 +59,7 @@ pub fn face(
     Faced {
         mesh: part,
         marked,
+        density,
         axis: None,
         refused: reason.map(|reason| Mirrored::Refused { reason }),
     }

@@ -128,6 +128,8 @@ pub fn image_of(made: &PartResult, of: usize, axis: usize) -> PartResult {
     PartResult {
         mesh: mesh.expect("faces turned round make a mesh as before"),
         sphere: flip(&made.sphere),
+        features: made.features.clone(),
+        crosses: made.crosses.iter().map(|c| c.mirrored(axis)).collect(),
         area: made.area,
         report,
     }

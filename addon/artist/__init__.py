@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the artist has left on an object, carried from its old mesh to its new one.
+
+Each kind of data has a file of its own. All is read before the core runs and written after, by the
+core's word on where every element of the result comes from. What stays with the object itself needs
+no carrying: modifiers, constraints, parents, materials, custom properties.
+"""
+
+from dataclasses import dataclass
+
+import bpy
+import orbflow_native
+
+from . import edges, elements, groups, keys, layers
+from .edges import Edges
+from .elements import Elements
+from .groups import Group
+from .keys import Key
+
+
+@dataclass(frozen=True)
+class Artist:
+    """Data of an object by what it lies on."""
+
+    edges: Edges | None
+    elements: Elements
+    groups: list[Group]
+    keys: list[Key]
+    #: What cannot be carried, in words.
+    lost: list[str]
+
+
+def read(thing: bpy.types.Object) -> Artist:
+    """Reads what is on an object that is not in edit mode."""
+    mesh = thing.data
+    return Artist(
+        edges.read(mesh), elements.read(mesh), groups.read(thing), keys.read(mesh), _lost(mesh)
+    )
+
+
+def write(
+    thing: bpy.types.Object,
+    artist: Artist,
+    result: orbflow_native.Remeshed,
+    old: bpy.types.Mesh,
+) -> None:
+    """Leaves the same on an object that has its new mesh; `old` is the one it had."""
+    if artist.edges:
+        edges.write(thing.data, artist.edges, result)
+    mix = elements.write(thing.data, artist.elements, result)
+    if mix is None:
+        return
+    groups.write(thing, artist.groups, mix)
+    keys.write(thing, artist.keys, mix, old)
+
+
+def _lost(mesh: bpy.types.Mesh) -> list[str]:
+    lost = ["custom normals"] if mesh.has_custom_normals else []
+    return lost + [f"attribute {each.name}" for each in mesh.attributes if layers.is_lost(each)]

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the artist has left on edges: sharp, crease, seam, bevel weight, attributes."""
+
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+import orbflow_native
+from numpy.typing import NDArray
+
+from . import layers
+from .layers import Layer
+
+Int = NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class Edges:
+    """The edges on which something is left, and what."""
+
+    ends: Int
+    layers: list[Layer]
+
+
+def read(mesh: bpy.types.Mesh) -> Edges | None:
+    """Reads what is left on edges; none where nothing is."""
+    found = list(layers.read(mesh, "EDGE"))
+    is_left = np.zeros(len(mesh.edges), bool)
+    for layer in found:
+        is_left |= layer.values.any(axis=1)
+    if not is_left.any():
+        return None
+    (rows,) = is_left.nonzero()
+    return Edges(ends_of(mesh)[rows], [layer.taken(rows) for layer in found])
+
+
+def write(mesh: bpy.types.Mesh, edges: Edges, result: orbflow_native.Remeshed) -> None:
+    """Leaves the same on the edges of a new mesh that lie on these."""
+    rows = _find(mesh, result.carried_edges)
+    for layer in edges.layers:
+        values = np.zeros((len(mesh.edges), layer.values.shape[1]), layer.values.dtype)
+        values[rows] = layer.values[result.carried_from]
+        if values.any():
+            Layer(layer.name, layer.kind, values).write(mesh, "EDGE")
+
+
+def ends_of(mesh: bpy.types.Mesh) -> Int:
+    """The vertices of every edge, (E, 2)."""
+    ends = np.empty(2 * len(mesh.edges), np.int32)
+    if len(ends):
+        mesh.attributes[".edge_verts"].data.foreach_get("value", ends)
+    return ends.reshape(-1, 2)
+
+
+def _find(mesh: bpy.types.Mesh, ends: Int) -> NDArray[np.intp]:
+    """Which edges of a mesh have these ends."""
+
+    def key(ends: Int) -> NDArray[np.int64]:
+        low, high = np.sort(ends, axis=1).astype(np.int64).T
+        return low * len(mesh.vertices) + high
+
+    own = key(ends_of(mesh))
+    order = np.argsort(own)
+    return order[np.searchsorted(own, key(ends), sorter=order)]

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where the artist wants smaller quads: a vertex group or a colour attribute."""
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+# How bright a colour is, as Blender itself turns colours into numbers.
+_BRIGHTNESS = np.array((0.2126, 0.7152, 0.0722), np.float32)
+
+
+class NoSuchName(Exception):
+    """An object has neither a vertex group nor a colour attribute of a name."""
+
+
+def names(thing: bpy.types.Object | None) -> list[tuple[str, str]]:
+    """The names that an object offers, each with what it is."""
+    if thing is None or thing.type != "MESH":
+        return []
+    groups = [(group.name, "Vertex Group") for group in thing.vertex_groups]
+    return groups + [(each.name, "Color Attribute") for each in thing.data.color_attributes]
+
+
+def read(thing: bpy.types.Object, name: str) -> NDArray[np.float32] | None:
+    """The density at every vertex of an object, from 0 to 1; none where no name is given.
+
+    A vertex group gives its weights, a colour its brightness. Raises `NoSuchName`.
+    """
+    if not name:
+        return None
+    if (group := thing.vertex_groups.get(name)) is not None:
+        return _weights(thing.data, group.index)
+    if (attribute := thing.data.color_attributes.get(name)) is not None:
+        return _brightness(thing.data, attribute)
+    offered = ", ".join(each for each, _ in names(thing)) or "none"
+    raise NoSuchName(f"no vertex group or color attribute is named '{name}'; there are: {offered}")
+
+
+def _weights(mesh: bpy.types.Mesh, group: int) -> NDArray[np.float32]:
+    weights = np.zeros(len(mesh.vertices), np.float32)
+    for i, vertex in enumerate(mesh.vertices):
+        for each in vertex.groups:
+            if each.group == group:
+                weights[i] = each.weight
+    return weights
+
+
+def _brightness(mesh: bpy.types.Mesh, attribute: bpy.types.Attribute) -> NDArray[np.float32]:
+    colours = np.empty(4 * len(attribute.data), np.float32)
+    attribute.data.foreach_get("color", colours)
+    # Colours may be brighter than white; that asks for no more than white does.
+    bright = (colours.reshape(-1, 4)[:, :3] @ _BRIGHTNESS).clip(0, 1)
+    if attribute.domain == "POINT":
+        return bright
+    corners = np.empty(len(mesh.loops), np.int32)
+    mesh.attributes[".corner_vert"].data.foreach_get("value", corners)
+    n_vertices = len(mesh.vertices)
+    sums = np.bincount(corners, bright, n_vertices)
+    counts = np.bincount(corners, minlength=n_vertices)
+    return (sums / np.maximum(counts, 1)).astype(np.float32)

@@ -1,0 +1,211 @@
+//! The place of the old surface that belongs to each vertex, corner and face of the new one.
+
+use std::collections::BTreeSet;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::Source;
+use crate::mesh::{FaceId, HalfedgeId, HalfedgeMap, Id, PolygonMesh, TriangleMesh};
+use crate::nearest::{Bvh, Closest, closest_on_triangle};
+use crate::progress::{Cancelled, Progress};
+
+/// Faces between two looks at the progress: some milliseconds of work.
+const CHUNK: usize = 512;
+/// A corner looks for its place among triangles no farther from the middle of its face than this
+/// many times the farthest corner: below, the place of a corner that lies off the surface is missed;
+/// above, only time grows.
+const REACH: f64 = 1.25;
+
+/// Places on the old surface.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Places {
+    /// Of every vertex.
+    pub vertices: Vec<Closest>,
+    /// Of every corner of every face: on the same side of the cuts as the middle of the face.
+    pub corners: Vec<Closest>,
+    /// The triangle under the middle of every face.
+    pub faces: Vec<FaceId>,
+}
+
+/// Finds the places of an output on the surface that it was made of.
+///
+/// Data that is cut along edges, as texture coordinates are along seams, is taken at the corners of
+/// faces, each from one side of the cuts alone. `cuts` has both halves of each such edge. `tree` is
+/// that of the mesh. Without an old face there are no places. Costs a walk over the triangles below
+/// every face.
+///
+/// # Errors
+/// When cancelled.
+pub fn places(
+    (old, tree): (&TriangleMesh, &Bvh),
+    cuts: &HalfedgeMap<bool>,
+    output: &PolygonMesh,
+    progress: &Progress,
+) -> Result<Places, Cancelled> {
+    let Some(source) = Source::new(tree) else {
+        return Ok(Places::default());
+    };
+    let mut places = Places::default();
+    let mut normals = vec![DVec3::ZERO; output.n_vertices()];
+    let mut reach = vec![0.0f64; output.n_vertices()];
+    let faces: Vec<FaceId> = output.face_ids().collect();
+    for chunk in faces.chunks(CHUNK) {
+        progress.at(places.faces.len() as f64 / faces.len() as f64)?;
+        let face = |&face: &FaceId| Face::new(output, face).places(source, old, cuts);
+        let found: Vec<_> = chunk.par_iter().map(face).collect();
+        for (&face, (under, corners)) in chunk.iter().zip(found) {
+            let Face { normal, radius, .. } = Face::new(output, face);
+            for v in output.face(face) {
+                normals[v.index()] += normal;
+                reach[v.index()] = reach[v.index()].max(radius);
+            }
+            places.faces.push(under);
+            places.corners.extend(corners);
+        }
+    }
+    progress.check()?;
+    let vertices = output.positions().par_iter().zip(&normals).zip(&reach);
+    let place = |((&p, &normal), &reach)| source.at(p, normal, reach);
+    places.vertices = vertices.map(place).collect();
+    Ok(places)
+}
+
+/// A face of the output.
+struct Face {
+    corners: Vec<DVec3>,
+    middle: DVec3,
+    /// Along the normal, twice as long as its area.
+    normal: DVec3,
+    /// How far the farthest corner is from the middle.
+    radius: f64,
+}
+
+impl Face {
+    fn new(output: &PolygonMesh, face: FaceId) -> Self {
+        let corners = output.face(face).iter().map(|&v| output.position(v));
+        let corners: Vec<DVec3> = corners.collect();
+        let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
+        let ahead = corners.iter().cycle().skip(1);
+        let normal = corners.iter().zip(ahead);
+        let normal = normal.map(|(&a, &b)| (a - middle).cross(b - middle)).sum();
+        let radius = corners.iter().map(|p| p.distance(middle));
+        Self {
+            middle,
+            normal,
+            radius: radius.fold(0.0, f64::max),
+            corners,
+        }
+    }
+
+    /// The triangle under the middle, and the places of the corners.
+    fn places(
+        &self,
+        source: Source,
+        old: &TriangleMesh,
+        cuts: &HalfedgeMap<bool>,
+    ) -> (FaceId, Vec<Closest>) {
+        let under = source.at(self.middle, self.normal, self.radius);
+        let patch = self.patch(under.face, old, cuts);
+        let place = |&corner: &DVec3| {
+            let all = patch.iter();
+            let all = all.map(|&face| closest_on_triangle(corner, old.triangle(face)).of(face));
+            let nearer =
+                |a: &Closest, b: &Closest| a.distance_squared.total_cmp(&b.distance_squared);
+            all.min_by(nearer).unwrap_or(under)
+        };
+        (under.face, self.corners.iter().map(place).collect())
+    }
+
+    /// The triangles around the one under the middle that can be reached without crossing a cut, in
+    /// the order of their ids.
+    fn patch(
+        &self,
+        under: FaceId,
+        old: &TriangleMesh,
+        cuts: &HalfedgeMap<bool>,
+    ) -> BTreeSet<FaceId> {
+        let reach = (REACH * self.radius).powi(2);
+        let is_near =
+            |face| closest_on_triangle(self.middle, old.triangle(face)).distance_squared <= reach;
+        let mut patch = BTreeSet::from([under]);
+        let mut open = vec![under];
+        while let Some(face) = open.pop() {
+            let first = old.halfedge(face);
+            let ways = [first, first.next(), first.prev()].into_iter();
+            let beyond = ways.filter(|&h| !cuts[h]).filter_map(|h| old.twin(h));
+            for next in beyond.map(HalfedgeId::face) {
+                if !patch.contains(&next) && is_near(next) {
+                    patch.insert(next);
+                    open.push(next);
+                }
+            }
+        }
+        patch
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shapes;
+
+    fn found(old: &TriangleMesh, cuts: &HalfedgeMap<bool>, new: &TriangleMesh) -> Places {
+        let output = shapes::polygons(new);
+        let tree = Bvh::of_mesh(old);
+        places((old, &tree), cuts, &output, &Progress::none()).unwrap()
+    }
+
+    fn uncut(mesh: &TriangleMesh) -> HalfedgeMap<bool> {
+        HalfedgeMap::filled(3 * mesh.n_faces(), false)
+    }
+
+    #[test]
+    fn a_mesh_finds_itself() {
+        for (name, mesh) in shapes::closed(6) {
+            let places = found(&mesh, &uncut(&mesh), &mesh);
+            assert_eq!(places.faces, mesh.face_ids().collect::<Vec<_>>(), "{name}");
+            let corners = mesh.face_ids().flat_map(|f| mesh.triangle(f));
+            for (place, corner) in places.corners.iter().zip(corners) {
+                assert!(place.position.distance(corner) < 1e-9, "{name}");
+            }
+            for (place, &p) in places.vertices.iter().zip(mesh.positions()) {
+                assert!(place.position.distance(p) < 1e-9, "{name}");
+            }
+        }
+    }
+
+    #[test]
+    fn corners_stay_on_the_side_of_the_cut_that_their_face_is_on() {
+        let [fine, coarse] = [20, 7].map(|n| shapes::mapped_cube(n, DVec3::normalize_or_zero));
+        let is_right =
+            |mesh: &TriangleMesh, face| mesh.triangle(face).iter().sum::<DVec3>().x > 0.0;
+        let cut = |h| {
+            let twin = fine.twin(h).expect("a sphere is closed");
+            is_right(&fine, FaceId::from_index(h.face().index())) != is_right(&fine, twin.face())
+        };
+        let cuts: HalfedgeMap<bool> = fine.halfedge_ids().map(cut).collect();
+        let places = found(&fine, &cuts, &coarse);
+        let mut n_across = 0;
+        for (i, place) in places.corners.iter().enumerate() {
+            let side = is_right(&fine, places.faces[i / 3]);
+            assert_eq!(is_right(&fine, place.face), side);
+            let corner = coarse.triangle(FaceId::from_index(i / 3))[i % 3];
+            n_across += usize::from((corner.x > 0.05) != side && corner.x.abs() > 0.05);
+        }
+        assert!(n_across > 10, "no face lies across the cut");
+    }
+
+    #[test]
+    fn without_an_old_surface_there_are_no_places() {
+        let output = shapes::polygons(&shapes::sphere(3));
+        let old = TriangleMesh::new(Vec::new(), Vec::new()).unwrap();
+        let nothing = places(
+            (&old, &Bvh::new(&[])),
+            &uncut(&old),
+            &output,
+            &Progress::none(),
+        );
+        assert_eq!(nothing, Ok(Places::default()));
+    }
+}
