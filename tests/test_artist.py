@@ -242,6 +242,7 @@ def test_origins_name_corners_of_the_input_and_mix_to_the_place() -> None:
     assert plain.origins is None
     assert plain.positions.tobytes() == told.positions.tobytes()
     origins = told.origins
+    assert origins is not None
     for corners, weights, places in (
         (origins.vertex_corners, origins.vertex_weights, told.positions),
         (origins.corner_corners, origins.corner_weights, told.positions[told.corner_vert]),

@@ -60,6 +60,7 @@ fn panel<'a>(area: &Area<'a>, what: &str, curves: &[Curve<'_>]) -> Drawn<'a> {
         .build_cartesian_2d(0.0..last, 0.0..1.05 * most)?;
     let mut mesh = chart.configure_mesh();
     mesh.x_desc("steps").y_desc(what).label_style(TEXT);
+    mesh.max_light_lines(1);
     mesh.x_label_formatter(&|x| format!("{x:.0}")).draw()?;
     for (name, points, colour) in curves {
         let line = LineSeries::new(points.iter().copied(), colour.stroke_width(2));

@@ -1,6 +1,6 @@
 //! The place of the old surface that belongs to each vertex, corner and face of the new one.
 
-use std::collections::BTreeSet;
+use std::collections::HashSet;
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -16,6 +16,10 @@ const CHUNK: usize = 512;
 /// many times the farthest corner: below, the place of a corner that lies off the surface is missed;
 /// above, only time grows.
 const REACH: f64 = 1.25;
+
+/// A triangle farther from the middle must be nearer to a corner by more than this share of the
+/// squared reach.
+const CLEARLY_NEARER: f64 = 1e-12;
 
 /// Places on the old surface.
 #[derive(Clone, PartialEq, Debug, Default)]
@@ -107,37 +111,39 @@ impl Face {
     ) -> (FaceId, Vec<Closest>) {
         let under = source.at(self.middle, self.normal, self.radius);
         let patch = self.patch(under.face, old, cuts);
+        // On an edge both sides are as near but for rounding; the first is the nearer to the middle.
+        let clearly = CLEARLY_NEARER * self.radius.powi(2);
+        let nearer = |best: Closest, next: Closest| {
+            if next.distance_squared < best.distance_squared - clearly {
+                next
+            } else {
+                best
+            }
+        };
         let place = |&corner: &DVec3| {
-            let all = patch.iter();
-            let all = all.map(|&face| closest_on_triangle(corner, old.triangle(face)).of(face));
-            let nearer =
-                |a: &Closest, b: &Closest| a.distance_squared.total_cmp(&b.distance_squared);
-            all.min_by(nearer).unwrap_or(under)
+            let on = |&face: &FaceId| closest_on_triangle(corner, old.triangle(face)).of(face);
+            patch.iter().map(on).reduce(nearer).unwrap_or(under)
         };
         (under.face, self.corners.iter().map(place).collect())
     }
 
     /// The triangles around the one under the middle that can be reached without crossing a cut, in
-    /// the order of their ids.
-    fn patch(
-        &self,
-        under: FaceId,
-        old: &TriangleMesh,
-        cuts: &HalfedgeMap<bool>,
-    ) -> BTreeSet<FaceId> {
+    /// the order of the steps from it.
+    fn patch(&self, under: FaceId, old: &TriangleMesh, cuts: &HalfedgeMap<bool>) -> Vec<FaceId> {
         let reach = (REACH * self.radius).powi(2);
         let is_near =
             |face| closest_on_triangle(self.middle, old.triangle(face)).distance_squared <= reach;
-        let mut patch = BTreeSet::from([under]);
-        let mut open = vec![under];
-        while let Some(face) = open.pop() {
+        let mut seen = HashSet::from([under]);
+        let mut patch = vec![under];
+        let mut n_done = 0;
+        while let Some(&face) = patch.get(n_done) {
+            n_done += 1;
             let first = old.halfedge(face);
             let ways = [first, first.next(), first.prev()].into_iter();
             let beyond = ways.filter(|&h| !cuts[h]).filter_map(|h| old.twin(h));
             for next in beyond.map(HalfedgeId::face) {
-                if !patch.contains(&next) && is_near(next) {
-                    patch.insert(next);
-                    open.push(next);
+                if seen.insert(next) && is_near(next) {
+                    patch.push(next);
                 }
             }
         }
