@@ -249,7 +249,8 @@ fn mended(
     let report = ProposalReport::new(mesh, &sphere, proposed.n_relaxations, progress)?;
     let mut valid = Valid::new(sphere, proposed.n_relaxations);
     if !report.is_valid() && !valid.mend(mesh, report.n_folds, &progress.part("", 0.0, 0.5))? {
-        valid.fall_back(hierarchy, &progress.part("", 0.5, 1.0))?;
+        let whole = progress.part("", 0.5, 1.0);
+        valid.fall_back(hierarchy, Solver::default(), &whole)?;
     }
     Ok((valid, report))
 }
@@ -315,17 +316,18 @@ impl Valid {
         Ok(true)
     }
 
-    /// Gives the proposal up for the solver's own map.
+    /// Gives the proposal up for a solver's own map.
     fn fall_back(
         &mut self,
         hierarchy: &CollapseHierarchy,
+        solver: Solver,
         progress: &Progress,
     ) -> Result<(), Error> {
         self.report = RepairReport {
             fell_back_to_solver: true,
             ..RepairReport::default()
         };
-        let own = Solver::default().propose(hierarchy, progress)?;
+        let own = solver.propose(hierarchy, progress)?;
         self.n_relaxations += own.n_relaxations;
         self.sphere = own.sphere;
         Ok(())
