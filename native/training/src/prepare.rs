@@ -20,6 +20,8 @@ const LEAST_FACES: usize = 32;
 const MOST_PARTS: usize = 3;
 /// Parts keep at most so many faces: evaluation finishes maps of this size.
 pub const WHOLE_FACES: usize = 16_000;
+/// Longer reasons are cut: a hostile file may have a word of a megabyte, and reasons name words.
+const LONGEST_REASON: usize = 300;
 /// Sources between two reports of progress, and what a kill can lose.
 const N_AT_ONCE: usize = 32;
 
@@ -141,6 +143,12 @@ fn made(item: &Item, n_faces: usize) -> (Source, Vec<Shape>) {
         match shape(part, n_faces) {
             Ok(shape) => shapes.push(shape),
             Err(reason) => source.left_out.push(format!("part {i}: {reason}")),
+        }
+    }
+    for text in source.left_out.iter_mut().chain([&mut source.licence]) {
+        if let Some((end, _)) = text.char_indices().nth(LONGEST_REASON) {
+            text.truncate(end);
+            text.push('…');
         }
     }
     (source, shapes)

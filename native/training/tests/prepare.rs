@@ -40,6 +40,7 @@ fn models() -> (TempDir, PathBuf) {
     put("broken.ply", b"ply\nnonsense");
     put("broken.zip", b"PK nonsense");
     put("notes.txt", b"not a mesh");
+    put("long.obj", &[b"v 0 0 ", &[b'x'; 1 << 21][..]].concat());
     put("manifest.csv", b"file,licence\nanimals/cat.obj,CC-BY-4.0\n");
     let files = [
         ("License.txt", b"These models are CC0.".to_vec()),
@@ -101,6 +102,7 @@ fn folders_and_zip_files_become_a_set_that_says_what_is_in_it() {
             "unknown",
             "1 part with a border",
         ),
+        ("models/long.obj", "models", "unknown", "line 1: 'xxx"),
         ("models/broken.ply", "models", "unknown", "line 2"),
         (
             "models/broken.zip",
@@ -130,7 +132,7 @@ fn folders_and_zip_files_become_a_set_that_says_what_is_in_it() {
         let reasons = source.left_out.join("; ");
         assert!(reasons.contains(left_out), "{name}: {reasons}");
     }
-    assert_eq!(manifest.sources.len(), 7 + 6);
+    assert_eq!(manifest.sources.len(), 7 + 7);
     let test = set.shapes_of(Split::Test);
     assert!(
         test.iter()
@@ -173,7 +175,7 @@ fn a_cancelled_run_says_how_far_it_came() {
         cancelled,
         Err(PrepareError::Cancelled {
             n_done: 0,
-            n_sources: 13
+            n_sources: 14
         })
     ));
     assert!(!Set::open(&output).unwrap().manifest().is_complete);
