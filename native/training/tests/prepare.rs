@@ -40,7 +40,7 @@ fn models() -> (TempDir, PathBuf) {
     put("broken.ply", b"ply\nnonsense");
     put("broken.zip", b"PK nonsense");
     put("notes.txt", b"not a mesh");
-    put("long.obj", &[b"v 0 0 ", &[b'x'; 1 << 21][..]].concat());
+    put("long.obj", &[&b"v 0 0 "[..], &vec![b'x'; 1 << 21]].concat());
     put("manifest.csv", b"file,licence\nanimals/cat.obj,CC-BY-4.0\n");
     let files = [
         ("License.txt", b"These models are CC0.".to_vec()),
