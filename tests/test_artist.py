@@ -253,3 +253,26 @@ def test_origins_name_corners_of_the_input_and_mix_to_the_place() -> None:
     assert origins.faces.shape == told.loop_start.shape
     with pytest.raises(orbflow_native.InputError, match="cut edge 0 names vertex 9999"):
         orbflow_native.remesh(*mesh, cut_edges=np.array([[9999, 0]], np.int32))
+
+
+def test_where_a_mesh_is_made_symmetric_its_positive_side_is_carried_to_both() -> None:
+    points, starts, corners = ball()
+    points = points * np.where(points[:, :1] < -0.3, 1.15, 1).astype(np.float32)
+    ends = np.stack([corners.reshape(-1, 3), np.roll(corners.reshape(-1, 3), 1, 1)], -1)
+    sides = np.unique(np.sort(ends.reshape(-1, 2)), axis=0)
+    ring = np.ascontiguousarray(sides[(np.abs(points[sides][..., 2]) < 1e-6).all(1)])
+    result = orbflow_native.remesh(
+        points,
+        starts,
+        corners,
+        faces=500,
+        mirror="x",
+        score_samples=0,
+        marked_edges=ring,
+        carried_edges=ring,
+    )
+    assert result.report["plane"]["was_symmetric"] is False
+    middles = result.positions[result.carried_edges].mean(1)[:, 0]
+    n_right, n_left = (middles > 1e-3).sum(), (middles < -1e-3).sum()
+    assert n_left == n_right > 8
+    assert (points[ring[result.carried_from]].mean(1)[:, 0] > -1e-3).all()

@@ -33,7 +33,7 @@ pub enum Command {
     /// Rebuild a mesh with a chosen number of faces
     #[command(after_help = AFTER_HELP)]
     Remesh(Remesh),
-    /// Rebuild a mesh from what the graph network proposes, or say that it could not be repaired
+    /// Rebuild a mesh from what the graph network proposes, or say that it is beyond repair
     #[command(after_help = AFTER_HELP)]
     Predict(Predict),
     /// Map every vertex of a mesh to the unit sphere

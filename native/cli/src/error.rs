@@ -54,7 +54,7 @@ pub enum Error {
     },
     /// The network's proposal for a part was no use.
     #[error(
-        "{place}: the proposal for part {part} of {n_parts} could not be repaired: {n_folds} triangles are \
+        "{place}: the proposal for part {part} of {n_parts} is beyond repair: {n_folds} triangles are \
          folded on its {n_vertices} vertices; orbflow remesh takes the solver's map in such a case"
     )]
     BeyondRepair {

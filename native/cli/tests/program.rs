@@ -157,7 +157,7 @@ fn predict_says_that_a_proposal_was_no_use_and_writes_the_report_alone() {
     let files = ["predict", &input, &output, "--weights", &path];
     let refused = run(&[&files[..], &["--report", &report, "--faces", "200"]].concat());
     assert_eq!(refused.code, 3, "{}", refused.err);
-    let words = "ball.obj: the proposal for part 1 of 1 could not be repaired";
+    let words = "ball.obj: the proposal for part 1 of 1 is beyond repair";
     assert!(refused.err.contains(words), "{}", refused.err);
     assert_eq!(folder.names(), ["bad.orbflow", "ball.obj", "r.json"]);
     // Remesh does it all the same, by the solver.

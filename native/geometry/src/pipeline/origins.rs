@@ -8,6 +8,9 @@ use crate::nearest::{Bvh, Closest};
 use crate::progress::{Cancelled, Progress};
 use crate::transfer;
 
+/// Places between two looks at the progress: some milliseconds of work.
+const CHUNK: usize = 8192;
+
 /// Three corners of one face of the input, and their shares.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Origin {
@@ -45,10 +48,17 @@ pub fn origins(
         corners: [0, 1, 2].map(|i| prepared.input_corner(input.mesh, place.face, i)),
         weights: place.weights,
     };
-    let origins = |places: &[Closest]| places.iter().map(origin).collect();
+    let origins = |places: &[Closest]| {
+        let mut origins = Vec::with_capacity(places.len());
+        for chunk in places.chunks(CHUNK) {
+            progress.check()?;
+            origins.extend(chunk.iter().map(origin));
+        }
+        Ok(origins)
+    };
     Ok(Some(Origins {
-        vertices: origins(&places.vertices),
-        corners: origins(&places.corners),
+        vertices: origins(&places.vertices)?,
+        corners: origins(&places.corners)?,
         faces: places
             .faces
             .iter()

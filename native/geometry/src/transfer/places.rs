@@ -10,8 +10,11 @@ use crate::mesh::{FaceId, HalfedgeId, HalfedgeMap, Id, PolygonMesh, TriangleMesh
 use crate::nearest::{Bvh, Closest, closest_on_triangle};
 use crate::progress::{Cancelled, Progress};
 
-/// Faces between two looks at the progress: some milliseconds of work.
-const CHUNK: usize = 512;
+/// Faces between two looks at the progress: some milliseconds of work where each lies on a thousand
+/// triangles.
+const FACES: usize = 32;
+/// The same for vertices.
+const VERTICES: usize = 2048;
 /// A corner looks for its place among triangles no farther from the middle of its face than this
 /// many times the farthest corner: below, the place of a corner that lies off the surface is missed;
 /// above, only time grows.
@@ -54,7 +57,7 @@ pub fn places(
     let mut normals = vec![DVec3::ZERO; output.n_vertices()];
     let mut reach = vec![0.0f64; output.n_vertices()];
     let faces: Vec<FaceId> = output.face_ids().collect();
-    for chunk in faces.chunks(CHUNK) {
+    for chunk in faces.chunks(FACES) {
         progress.at(places.faces.len() as f64 / faces.len() as f64)?;
         let face = |&face: &FaceId| Face::new(output, face).places(source, old, cuts);
         let found: Vec<_> = chunk.par_iter().map(face).collect();
@@ -68,10 +71,17 @@ pub fn places(
             places.corners.extend(corners);
         }
     }
-    progress.check()?;
-    let vertices = output.positions().par_iter().zip(&normals).zip(&reach);
-    let place = |((&p, &normal), &reach)| source.at(p, normal, reach);
-    places.vertices = vertices.map(place).collect();
+    let vertices: Vec<_> = output
+        .positions()
+        .iter()
+        .zip(normals.iter().zip(&reach))
+        .collect();
+    for chunk in vertices.chunks(VERTICES) {
+        progress.check()?;
+        let place =
+            |&(&p, (&normal, &reach)): &(&DVec3, (&DVec3, &f64))| source.at(p, normal, reach);
+        places.vertices.par_extend(chunk.par_iter().map(place));
+    }
     Ok(places)
 }
 

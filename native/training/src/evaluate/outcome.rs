@@ -83,6 +83,8 @@ pub struct Whole {
     pub n_vertices: usize,
     /// From the solver alone.
     pub solver: Cost,
+    /// From the solver in a hurry, as it grows the network's proposals.
+    pub brisk: Cost,
     /// From the network's proposal.
     pub network: Cost,
     /// Whether the proposal was given up for the solver's map.
@@ -226,10 +228,12 @@ impl Subject {
         let mesh = PolygonMesh::from_faces(mesh.positions().to_vec(), &faces)
             .expect("a triangle mesh is a polygon mesh");
         let (solver, _) = finished(&mesh, &Solver::default())?;
+        let (brisk, _) = finished(&mesh, &Solver::BRISK)?;
         let (network, gave_up) = finished(&mesh, &self.predictor)?;
         Ok(Whole {
             n_vertices,
             solver,
+            brisk,
             network,
             gave_up,
         })

@@ -92,21 +92,30 @@ pub struct ProposedSummary {
     pub f1_pct: [f64; 2],
 }
 
-/// Medians over finished maps: the network's figures in shares of the solver's.
+/// Medians over finished maps, in shares of the solver's.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize)]
 pub struct WholeSummary {
     /// How many shapes were finished.
     pub n_shapes: usize,
     /// Vertices.
     pub n_vertices: f64,
+    /// The solver in a hurry.
+    pub brisk: CostSummary,
+    /// The network, its proposals grown in a hurry.
+    pub network: CostSummary,
+    /// Of the shapes, in how many percent the proposal was given up.
+    pub gave_up_pct: f64,
+}
+
+/// Medians of shares.
+#[derive(Clone, Copy, PartialEq, Debug, Serialize)]
+pub struct CostSummary {
     /// Distortion.
     pub energy_ratio: f64,
     /// Relaxations of single vertices.
     pub relaxations_ratio: f64,
     /// Processor time; none where the system does not tell.
     pub cpu_ratio: Option<f64>,
-    /// Of the shapes, in how many percent the proposal was given up.
-    pub gave_up_pct: f64,
 }
 
 impl<'a> Asked<'a> {
@@ -267,24 +276,29 @@ impl ProposedSummary {
 impl WholeSummary {
     fn new(shapes: &[&Outcome]) -> Option<Self> {
         let wholes: Vec<_> = shapes.iter().filter_map(|outcome| outcome.whole).collect();
-        let ratio = |figure: fn(&Cost) -> f64| {
-            let ratio = |whole: &Whole| {
-                figure(&whole.network) / figure(&whole.solver).max(f64::MIN_POSITIVE)
-            };
-            median(wholes.iter().map(ratio))
-        };
-        let tells_time = |whole: &Whole| whole.solver.cpu_ms.is_some();
         (!wholes.is_empty()).then(|| Self {
             n_shapes: wholes.len(),
             n_vertices: median(wholes.iter().map(|whole| whole.n_vertices as f64)),
-            energy_ratio: ratio(|cost| cost.energy),
-            relaxations_ratio: ratio(|cost| cost.n_relaxations as f64),
-            cpu_ratio: wholes
-                .iter()
-                .all(tells_time)
-                .then(|| ratio(|cost| cost.cpu_ms.unwrap_or(0.0))),
+            brisk: CostSummary::new(&wholes, |whole| &whole.brisk),
+            network: CostSummary::new(&wholes, |whole| &whole.network),
             gave_up_pct: share_pct(&wholes, |whole| whole.gave_up),
         })
+    }
+}
+
+impl CostSummary {
+    fn new(wholes: &[Whole], which: fn(&Whole) -> &Cost) -> Self {
+        let ratio = |figure: fn(&Cost) -> f64| {
+            let ratio =
+                |whole: &Whole| figure(which(whole)) / figure(&whole.solver).max(f64::MIN_POSITIVE);
+            median(wholes.iter().map(ratio))
+        };
+        let tells_time = wholes.iter().all(|whole| whole.solver.cpu_ms.is_some());
+        Self {
+            energy_ratio: ratio(|cost| cost.energy),
+            relaxations_ratio: ratio(|cost| cost.n_relaxations as f64),
+            cpu_ratio: tells_time.then(|| ratio(|cost| cost.cpu_ms.unwrap_or(0.0))),
+        }
     }
 }
 
