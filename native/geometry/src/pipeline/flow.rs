@@ -1,17 +1,17 @@
 //! Quads that flow: an even surface, its flow, a cover of the sphere, the fit.
 
+use glam::DVec3;
 use serde::Serialize;
 
 use super::Settings;
 use super::clock::Clock;
 use super::crosses::{self, Cross};
+use super::probe::Halves;
 use super::{density, mirror};
 use crate::deform::{self, Deformed, Flowing, Target};
 use crate::embed::{self, Covered};
-use crate::measure::area_vector;
 use crate::mesh::{HalfedgeMap, PolygonMesh, TriangleMesh, VertexId, VertexMap};
 use crate::mirror::Doubled;
-use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
 use crate::sphere::{self, Adaptive};
 use crate::sphere_map::SphereMap;
@@ -21,13 +21,17 @@ use crate::{flow, pipeline};
 const LEAST_TRIANGLES: usize = 16_000;
 /// For few quads that is more than they can show.
 const MOST_TRIANGLES_PER_QUAD: usize = 40;
-/// And at least this many per quad: below, quads have no vertex inside that places them.
-const TRIANGLES_PER_QUAD: usize = 5;
+/// And at least this many per quad: fewer place quads less well, more only cost time.
+const TRIANGLES_PER_QUAD: f64 = 3.5;
 
 /// Points of the surface farther from the quads than this many edges are missed: a limb is cut off.
 const MOST_MISSED: f64 = 2.0;
-/// How many points are asked.
-const N_PROBES: usize = 4_000;
+/// Quads whose middle is farther from the surface than this many edges are a sheet between limbs.
+/// Round a limb of three quads a middle is a quarter of an edge off.
+const MOST_ASTRAY: f64 = 1.0;
+
+/// One in so many quads may be inverted before it is opened; of more, shape is lost.
+const QUADS_PER_KNOT: usize = 50;
 
 /// Whether a part's quads flow.
 #[derive(Clone, PartialEq, Debug, Serialize)]
@@ -70,9 +74,9 @@ impl Attempt {
         let mut settings = style.clone();
         match self {
             Self::Usual => {}
-            Self::Smoother => settings.field.alignment *= 0.5,
+            Self::Smoother => settings.field.alignment /= 3.0,
             Self::Closer => {
-                settings.field.alignment *= 2.0;
+                settings.field.alignment *= 4.0 / 3.0;
                 settings.search.seed += 1;
             }
             Self::Evener => {
@@ -87,7 +91,7 @@ impl Attempt {
 /// A part whose quads flow.
 pub struct FlowedPart {
     pub deformed: Deformed,
-    /// How many quads the part of the surface that they miss would take.
+    /// How many quads the part of the surface that they miss would take, and how many are astray.
     pub n_missed: usize,
     pub sphere: sphere::Report,
     pub flowed: Flowed,
@@ -100,7 +104,10 @@ pub struct FlowedPart {
 impl FlowedPart {
     /// How many quads fail the gate.
     fn n_failed(&self) -> usize {
-        self.deformed.report.n_inverted + self.n_missed
+        let report = &self.deformed.report;
+        let n_quads = self.deformed.mesh.n_faces();
+        let n_knotted = report.n_knotted.saturating_sub(n_quads / QUADS_PER_KNOT);
+        report.n_inverted + self.n_missed + n_knotted
     }
 }
 
@@ -312,23 +319,21 @@ impl Ground<'_> {
         Ok((found, covered))
     }
 
-    /// How many quads a part of the surface would take that lies far from all of them.
+    /// How many quads a part of the surface would take that lies far from all of them, and how many
+    /// lie far from the surface.
     fn n_missed(&self, mesh: &PolygonMesh) -> usize {
-        let halves = mesh
-            .faces()
-            .flat_map(|f| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]]);
-        let halves: Vec<_> = halves.map(|t| t.map(|v| mesh.position(v))).collect();
-        let areas = halves.iter().map(|&half| area_vector(half).length());
-        let quad_area = areas.sum::<f64>() / mesh.n_faces() as f64;
-        let bvh = Bvh::new(&halves);
-        let points = self.target.mesh().positions();
-        let some = points.iter().step_by(points.len().div_ceil(N_PROBES));
-        let n_probes = some.len();
-        let most = MOST_MISSED * MOST_MISSED * quad_area;
-        let n_far = some
-            .filter(|&&p| bvh.closest(p).distance_squared > most)
-            .count();
-        (n_far * mesh.n_faces()).div_ceil(n_probes)
+        let halves = Halves::of(mesh);
+        let area: f64 = halves.pieces().map(|(_, area)| area).sum();
+        let quad_area = area / mesh.n_faces() as f64;
+        let gaps = halves.gaps(self.target);
+        let is_missed = |gap: &&f64| **gap > MOST_MISSED.powi(2) * quad_area;
+        let n_far = gaps.iter().filter(is_missed).count();
+        let is_astray = |&(middle, _): &(DVec3, f64)| {
+            let gap = self.target.bvh().closest(middle).distance_squared;
+            gap > MOST_ASTRAY.powi(2) * quad_area
+        };
+        let n_astray = halves.pieces().filter(is_astray).count().div_ceil(2);
+        (n_far * mesh.n_faces()).div_ceil(gaps.len()) + n_astray
     }
 }
 
@@ -351,7 +356,7 @@ fn even(
 ) -> Result<(SphereMap, HalfedgeMap<bool>, sphere::Report), pipeline::Error> {
     let n_faces = LEAST_TRIANGLES
         .min(MOST_TRIANGLES_PER_QUAD * n_quads)
-        .max(TRIANGLES_PER_QUAD * n_quads);
+        .max((TRIANGLES_PER_QUAD * n_quads as f64) as usize);
     let settings = sphere::Settings {
         n_faces,
         seed,

@@ -20,6 +20,7 @@ mod marks;
 mod mirror;
 mod origins;
 mod part;
+mod probe;
 mod report;
 mod settings;
 mod split;

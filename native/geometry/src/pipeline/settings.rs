@@ -97,7 +97,7 @@ impl Style {
     /// What the flow of so many quads is asked for.
     fn flow(self, n_quads: usize) -> flow::Settings {
         let mut settings = flow::Settings::new(n_quads);
-        settings.field.alignment = 0.5 * 4.0_f64.powf(self.follow_shape);
+        settings.field.alignment = 0.75 * 4.0_f64.powf(self.follow_shape);
         settings.sizes.adaptivity = 2.0 * self.adaptivity;
         settings
     }
