@@ -5,12 +5,11 @@ use serde::Serialize;
 use super::Settings;
 use super::clock::Clock;
 use super::mirror;
+use super::probe::Halves;
 use crate::deform::{self, Deformed, Flowing, Target};
 use crate::embed::{self, Covered};
-use crate::measure::area_vector;
 use crate::mesh::{HalfedgeMap, PolygonMesh, TriangleMesh, VertexId, VertexMap};
 use crate::mirror::Doubled;
-use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
 use crate::sphere::{self, Adaptive};
 use crate::sphere_map::SphereMap;
@@ -25,8 +24,6 @@ const TRIANGLES_PER_QUAD: usize = 5;
 
 /// Points of the surface farther from the quads than this many edges are missed: a limb is cut off.
 const MOST_MISSED: f64 = 2.0;
-/// How many points are asked.
-const N_PROBES: usize = 4_000;
 
 /// Whether a part's quads flow.
 #[derive(Clone, PartialEq, Debug, Serialize)]
@@ -296,21 +293,12 @@ impl Ground<'_> {
 
     /// How many quads a part of the surface would take that lies far from all of them.
     fn n_missed(&self, mesh: &PolygonMesh) -> usize {
-        let halves = mesh
-            .faces()
-            .flat_map(|f| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]]);
-        let halves: Vec<_> = halves.map(|t| t.map(|v| mesh.position(v))).collect();
-        let areas = halves.iter().map(|&half| area_vector(half).length());
-        let quad_area = areas.sum::<f64>() / mesh.n_faces() as f64;
-        let bvh = Bvh::new(&halves);
-        let points = self.target.mesh().positions();
-        let some = points.iter().step_by(points.len().div_ceil(N_PROBES));
-        let n_probes = some.len();
-        let most = MOST_MISSED * MOST_MISSED * quad_area;
-        let n_far = some
-            .filter(|&&p| bvh.closest(p).distance_squared > most)
-            .count();
-        (n_far * mesh.n_faces()).div_ceil(n_probes)
+        let halves = Halves::of(mesh);
+        let area: f64 = halves.pieces().map(|(_, area)| area).sum();
+        let most = MOST_MISSED * MOST_MISSED * area / mesh.n_faces() as f64;
+        let gaps = halves.gaps(self.target);
+        let n_far = gaps.iter().filter(|&&gap| gap > most).count();
+        (n_far * mesh.n_faces()).div_ceil(gaps.len())
     }
 }
 

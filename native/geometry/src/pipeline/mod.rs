@@ -16,6 +16,7 @@ mod join;
 mod marks;
 mod mirror;
 mod part;
+mod probe;
 mod report;
 mod settings;
 mod split;

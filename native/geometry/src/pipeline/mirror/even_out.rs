@@ -3,13 +3,9 @@
 use glam::DVec3;
 
 use crate::deform::{Deformed, Target};
-use crate::measure::area_vector;
 use crate::mesh::{Id, PolygonMesh, VertexId};
 use crate::mirror::mirrored;
-use crate::nearest::Bvh;
-
-/// About how many points of the surface are compared with the quads.
-const N_PROBES: usize = 4_000;
+use crate::pipeline::probe::Halves;
 
 /// Makes quads whose connections are their own image so in space too.
 ///
@@ -79,24 +75,13 @@ fn sides(mesh: &PolygonMesh, images: &[VertexId]) -> Vec<Option<usize>> {
 
 /// The mean squared distance of quads and the target, both ways.
 fn distance(mesh: &PolygonMesh, target: &Target) -> f64 {
-    let halves = mesh
-        .faces()
-        .flat_map(|f| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]]);
-    let halves: Vec<_> = halves.map(|t| t.map(|v| mesh.position(v))).collect();
-    let own = Bvh::new(&halves);
-    let points = target.mesh().positions();
-    let some = points.iter().step_by(points.len().div_ceil(N_PROBES));
-    let (mut there, mut n) = (0.0, 0.0);
-    for &p in some {
-        there += own.closest(p).distance_squared;
-        n += 1.0;
-    }
+    let halves = Halves::of(mesh);
+    let gaps = halves.gaps(target);
+    let there = gaps.iter().sum::<f64>() / gaps.len() as f64;
     let (mut back, mut area) = (0.0, 0.0);
-    for half in halves {
-        let middle = (half[0] + half[1] + half[2]) / 3.0;
-        let weight = area_vector(half).length();
+    for (middle, weight) in halves.pieces() {
         back += weight * target.bvh().closest(middle).distance_squared;
         area += weight;
     }
-    there / n + back / area
+    there + back / area
 }

@@ -1,0 +1,66 @@
+//! How far a part's surface lies from its quads.
+
+use glam::DVec3;
+
+use crate::deform::Target;
+use crate::measure::area_vector;
+use crate::mesh::PolygonMesh;
+use crate::nearest::Bvh;
+
+/// About how many points of the surface are asked.
+const N_PROBES: usize = 4_000;
+
+/// Quads cut in halves along their first diagonal.
+pub struct Halves(Vec<[DVec3; 3]>);
+
+impl Halves {
+    pub fn of(mesh: &PolygonMesh) -> Self {
+        let cut = |f: &[_]| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]];
+        let halves = mesh.faces().flat_map(cut);
+        Self(halves.map(|t| t.map(|v| mesh.position(v))).collect())
+    }
+
+    /// The middle and the area of every half.
+    pub fn pieces(&self) -> impl Iterator<Item = (DVec3, f64)> {
+        let piece = |half: &[DVec3; 3]| {
+            let middle = half.iter().sum::<DVec3>() / 3.0;
+            (middle, area_vector(*half).length())
+        };
+        self.0.iter().map(piece)
+    }
+
+    /// The squared distances of some vertices of the target, evenly chosen.
+    pub fn gaps(&self, target: &Target) -> Vec<f64> {
+        let bvh = Bvh::new(&self.0);
+        let points = target.mesh().positions();
+        let some = points.iter().step_by(points.len().div_ceil(N_PROBES));
+        some.map(|&p| bvh.closest(p).distance_squared).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::TriangleMesh;
+    use crate::progress::Progress;
+    use crate::shapes;
+    use crate::sphere::quad_sphere;
+
+    #[test]
+    fn halves_have_all_of_the_area_and_the_gaps_of_the_surface_around_them() {
+        let quads = quad_sphere([6, 6, 6]);
+        let halves = Halves::of(&quads);
+        let area: f64 = halves.pieces().map(|(_, area)| area).sum();
+        assert!(
+            (area / (4.0 * std::f64::consts::PI) - 0.97).abs() < 0.02,
+            "{area}"
+        );
+        let far = shapes::sphere(20);
+        let positions = far.positions().iter().map(|&p| p * 2.0).collect();
+        let far = TriangleMesh::new(positions, far.faces().to_vec()).unwrap();
+        let target = Target::new(far, &Progress::none()).unwrap();
+        let gaps = halves.gaps(&target);
+        assert!((2_000..=4_000).contains(&gaps.len()), "{}", gaps.len());
+        assert!(gaps.iter().all(|gap| (1.0..1.1).contains(gap)), "{gaps:?}");
+    }
+}
