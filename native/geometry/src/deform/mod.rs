@@ -4,13 +4,13 @@
 //! surface point*. From there on every vertex lives twice, in space and on the sphere:
 //!
 //! ```text
-//! place on the map ─▶ relax, snap to sharp edges ─▶ lift onto the full-resolution target ─▶ straddle
-//!      locate           slide, flip, pin                  closest point that agrees        least squares
+//! place on the map ─▶ relax, snap to sharp edges ─▶ lift onto the full-resolution target ─▶ straddle ─▶ untangle
+//!      locate           slide, flip, pin                  closest point that agrees        least squares   quads
 //! ```
 //!
 //! A slide moves the sphere point along; one that would fold the primitive on the sphere is
 //! refused, so the result covers the sphere, and with it the surface, exactly once from beginning
-//! to end. The last two steps move vertices off the map's surface by no more than an edge.
+//! to end. The last three steps move vertices off the map's surface by no more than an edge.
 //!
 //! Not done here: choosing the primitive (`sphere`), and proving that faces do not cross in space.
 
@@ -18,12 +18,15 @@ mod cover;
 mod features;
 mod flips;
 mod follow;
+mod least_squares;
 mod lock;
 mod project;
 mod reach;
 mod relax;
 mod route;
 mod sheet;
+mod sites;
+mod skin;
 mod snap;
 mod straddle;
 mod target;
@@ -45,6 +48,7 @@ use lock::Seams;
 use reach::Span;
 use sheet::Sheet;
 pub use straddle::Anchor;
+use straddle::Fit;
 pub use target::Target;
 
 /// What to do, and how much of it.
@@ -60,10 +64,15 @@ pub struct Settings {
     pub n_flow_relaxations: usize,
     /// How often the faces are fitted to the surface by least squares.
     pub n_straddles: usize,
+    /// The same for quads that flow.
+    pub n_flow_straddles: usize,
     /// How strongly vertices are held where they are while faces are fitted.
     pub anchor: Anchor,
     /// The same for quads that flow, which lie along the shape already.
     pub flow_anchor: Anchor,
+    /// How much quads that flow wish to be squares while they are fitted, relative to the pull of
+    /// the surface: at 0.1 they come nearer but are sheared, at 1 they miss detail.
+    pub squareness: f64,
 }
 
 impl Default for Settings {
@@ -73,11 +82,13 @@ impl Default for Settings {
             n_quad_relaxations: 0,
             n_flow_relaxations: 40,
             n_straddles: 2,
+            n_flow_straddles: 4,
             anchor: Anchor::default(),
             flow_anchor: Anchor {
-                along: 0.2,
+                along: 0.02,
                 ..Anchor::default()
             },
+            squareness: 0.25,
         }
     }
 }
@@ -108,6 +119,8 @@ pub struct Report {
     pub n_stuck: usize,
     /// How many vertices did not get all the way onto the full-resolution surface.
     pub n_unprojected: usize,
+    /// How many quads that flow were inverted when they had been fitted.
+    pub n_knotted: usize,
     /// How many moves of vertices in space it took to open inverted quads that flow.
     pub n_opened: usize,
     /// How many quads have a corner that turns the wrong way all the same.
@@ -185,28 +198,20 @@ pub fn deform(
             &part,
         )?;
     }
-    let fit = (settings.n_straddles, settings.anchor);
-    report.n_unprojected = fit_to_target(&mut sheet, target, fit, progress)?;
+    let fit = Fit {
+        target,
+        reach: sheet.mean_edge(),
+        anchor: settings.anchor,
+        sites: &[],
+        squareness: 0.0,
+    };
+    report.n_unprojected = project::project(&mut sheet, target, fit.reach, progress)?;
+    let part = progress.part("", 0.7, 1.0);
+    fit.straddle(&mut sheet, settings.n_straddles, &part)?;
     if cover.is_none() {
         reach::reach(&mut sheet, (target, Span::CUT_OFF), progress)?;
     }
     Ok(Deformed::new(sheet, report))
-}
-
-/// The end of every deformation: onto the target, then so many straddling fits with an anchor.
-fn fit_to_target(
-    sheet: &mut Sheet,
-    target: &Target,
-    (n_straddles, anchor): (usize, Anchor),
-    progress: &Progress,
-) -> Result<usize, Cancelled> {
-    let reach = sheet.mean_edge();
-    let n_unprojected = project::project(sheet, target, reach, progress)?;
-    for round in 0..n_straddles {
-        progress.at(0.7 + 0.3 * round as f64 / n_straddles as f64)?;
-        straddle::straddle(sheet, target, (reach, anchor), progress)?;
-    }
-    Ok(n_unprojected)
 }
 
 impl Deformed {
@@ -237,6 +242,8 @@ impl Deformed {
 
 /// Rounds in which flowing quads are led to where they are wanted; later ones move next to nothing.
 const N_LEADS: usize = 8;
+/// Sites of the surface that call upon flowing quads, for each quad.
+const SITES_PER_QUAD: usize = 6;
 /// Rounds of relaxation between two moves along sharp lines.
 const ROUNDS_PER_SLIDE: usize = 4;
 
@@ -293,10 +300,20 @@ pub fn deform_flow(
     }
     seams.release_bad(&mut sheet);
     [report.n_feature_goals, report.n_feature_vertices] = seams.counts(&sheet);
-    let fit = (settings.n_straddles, settings.flow_anchor);
-    report.n_unprojected = fit_to_target(&mut sheet, target, fit, progress)?;
+    let edge = sheet.mean_edge();
+    report.n_unprojected = project::project(&mut sheet, target, edge, progress)?;
     reach::reach(&mut sheet, (target, Span::MISSED), progress)?;
-    report.n_opened = untangle::untangle(&mut sheet, progress)?;
+    let fit = Fit {
+        target,
+        reach: sheet.mean_edge(),
+        anchor: settings.flow_anchor,
+        sites: &sites::spread(target, SITES_PER_QUAD * sheet.faces().len()),
+        squareness: settings.squareness,
+    };
+    let part = progress.part("", 0.7, 1.0);
+    fit.straddle(&mut sheet, settings.n_flow_straddles, &part)?;
+    [report.n_knotted, report.n_opened] = untangle::untangle(&mut sheet, progress)?;
+    reach::reach(&mut sheet, (target, Span::LEFT), progress)?;
     Ok(Deformed::new(sheet, report))
 }
 

@@ -8,11 +8,10 @@ use rayon::prelude::*;
 
 use super::project::lift_towards;
 use super::sheet::Sheet;
-use super::straddle::triangles;
+use super::sites::{self, Site};
+use super::skin::Skin;
 use super::target::Target;
-use crate::measure::area_vector;
-use crate::mesh::{FaceId, Id, VertexId, VertexMap};
-use crate::nearest::Bvh;
+use crate::mesh::{Id, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
 
 /// Which points of the surface are reached for, by their distance from the faces in mean edges.
@@ -25,9 +24,14 @@ pub(super) struct Span {
 }
 
 impl Span {
-    /// All that faces miss by more than those that straddle do.
+    /// All that faces miss by more than those that straddle do; before the fit, which evens out.
     pub const MISSED: Self = Self {
         near: 0.3,
+        far: 2.0,
+    };
+    /// What the fit has left; nearer points would pull vertices out of it.
+    pub const LEFT: Self = Self {
+        near: 0.6,
         far: 2.0,
     };
     /// Limbs whose tips are cut off. Nearer than an edge, small triangles along sharp edges would be
@@ -46,16 +50,6 @@ const N_ROUNDS: usize = 6;
 const SHARE: f64 = 0.5;
 /// Quality that a pull may not spoil unless the face is worse already; above, fingers stay cut off.
 const GUARDED_QUALITY: f64 = 0.3;
-/// Cosine between the normals of a point and a face from which on it is another sheet's.
-const LEAST_AGREEMENT: f64 = -0.2;
-
-/// A point of the surface and the normal there.
-#[derive(Clone, Copy)]
-struct Site {
-    position: DVec3,
-    normal: DVec3,
-}
-
 /// A vertex, the step that it is to take, and the squared distance that calls for it.
 type Pull = (VertexId, DVec3, f64);
 
@@ -66,7 +60,7 @@ pub(super) fn reach(
     progress: &Progress,
 ) -> Result<(), Cancelled> {
     let edge = sheet.mean_edge();
-    let mut sites = sites(target);
+    let mut sites = sites::vertices(target, N_POINTS);
     for _ in 0..N_ROUNDS {
         progress.check()?;
         let pulls = pulls(sheet, (&sites, span), edge, progress)?;
@@ -91,20 +85,6 @@ pub(super) fn reach(
     Ok(())
 }
 
-/// Vertices of the surface, evenly chosen.
-fn sites(target: &Target) -> Vec<Site> {
-    let n = target.mesh().n_vertices();
-    let ids = (0..n).step_by(n.div_ceil(N_POINTS).max(1));
-    let site = |i| {
-        let v = VertexId::from_index(i);
-        Site {
-            position: target.mesh().position(v),
-            normal: target.vertex_normal(v),
-        }
-    };
-    ids.map(site).collect()
-}
-
 /// For each point that is far from the faces the vertex that it pulls, and the step.
 fn pulls(
     sheet: &Sheet,
@@ -112,19 +92,10 @@ fn pulls(
     edge: f64,
     progress: &Progress,
 ) -> Result<Vec<Option<Pull>>, Cancelled> {
-    let corners = triangles(sheet);
-    let flat: Vec<_> = corners
-        .iter()
-        .map(|t| t.map(|v| sheet.position(v)))
-        .collect();
-    let normal = |&triangle: &[DVec3; 3]| area_vector(triangle).normalize_or_zero();
-    let normals: Vec<DVec3> = flat.iter().map(normal).collect();
-    let bvh = Bvh::build(&flat, progress)?;
+    let skin = Skin::new(sheet, progress)?;
     let pull = |site: &Site| {
         progress.check()?;
-        let agrees = |face: FaceId| normals[face.index()].dot(site.normal) > LEAST_AGREEMENT;
-        let reach = (span.far * edge).powi(2);
-        let Some(foot) = bvh.closest_where(site.position, reach, agrees) else {
+        let Some(foot) = skin.closest(site, span.far * edge) else {
             return Ok(None);
         };
         if foot.distance_squared < (span.near * edge).powi(2) {
@@ -132,7 +103,7 @@ fn pulls(
         }
         let heaviest = (0..3).max_by(|&i, &j| foot.weights[i].total_cmp(&foot.weights[j]));
         let heaviest = heaviest.unwrap_or(0);
-        let vertex = corners[foot.face.index()][heaviest];
+        let vertex = skin.corners[foot.face.index()][heaviest];
         let step = (site.position - sheet.position(vertex)) * SHARE;
         Ok(Some((vertex, step, foot.distance_squared)))
     };
@@ -146,7 +117,7 @@ mod tests {
     use super::*;
     use crate::deform::project::project;
     use crate::measure::vertex_normals;
-    use crate::mesh::{PolygonMesh, TriangleMesh};
+    use crate::mesh::{FaceId, PolygonMesh, TriangleMesh};
     use crate::shapes;
     use crate::sphere::{icosphere, quad_sphere};
     use crate::sphere_map::SphereMap;

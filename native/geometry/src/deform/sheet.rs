@@ -69,6 +69,7 @@ impl Point {
 
 /// A primitive that is being deformed. Its faces always cover the sphere once: every move and flip
 /// keeps each face two positive spherical triangles, or one.
+#[derive(Clone)]
 pub(super) struct Sheet<'a> {
     map: &'a SphereMap,
     surface_normals: VertexMap<DVec3>,
@@ -235,6 +236,13 @@ impl<'a> Sheet<'a> {
         }
     }
 
+    /// Says what the normals are, where vertices have left the places that they had theirs from.
+    pub fn turn(&mut self, normals: &VertexMap<DVec3>) {
+        for (v, &normal) in normals.iter_ids() {
+            self.points[v].normal = normal;
+        }
+    }
+
     /// Whether every face at a vertex stays positive with another sphere point for it.
     pub fn covers(&self, vertex: VertexId, sphere: DVec3) -> bool {
         let at = |v: VertexId| {
@@ -311,7 +319,8 @@ fn point_at(map: &SphereMap, normals: &VertexMap<DVec3>, place: SurfacePoint) ->
 /// one, 0 for one without area, negative where a corner turns the wrong way.
 ///
 /// Triangles: 2√3 × twice the area / Σ squared edges. Quads: the scaled Jacobian, the sine of the
-/// worst corner, seen along the quad's own normal where that looks out of the surface.
+/// worst corner, seen along the quad's own normal, and where that does not look out of the surface
+/// along the surface's too.
 fn quality<'p>(face: &Face, at: impl Fn(VertexId) -> &'p Point) -> f64 {
     let corners = face.corners.map(at);
     let p = corners.map(|c| c.position);
@@ -325,13 +334,17 @@ fn quality<'p>(face: &Face, at: impl Fn(VertexId) -> &'p Point) -> f64 {
     let sum = corners.iter().fold(DVec3::ZERO, |sum, c| sum + c.normal);
     let outward = sum.normalize_or_zero();
     let own = (p[2] - p[0]).cross(p[3] - p[1]).normalize_or_zero();
-    let normal = if own.dot(outward) > LEAST_AGREEMENT {
-        own
-    } else {
-        outward
-    };
     let edge = |i: usize| (p[(i + 1) % 4] - p[i]).normalize_or_zero();
     let edges = [edge(0), edge(1), edge(2), edge(3)];
-    let sine = |i: usize| edges[i].cross(edges[(i + 1) % 4]).dot(normal);
-    sine(0).min(sine(1)).min(sine(2)).min(sine(3))
+    let turns = [0, 1, 2, 3].map(|i| edges[i].cross(edges[(i + 1) % 4]));
+    let worst = |normal: DVec3| {
+        turns
+            .iter()
+            .fold(1.0, |least: f64, turn| least.min(turn.dot(normal)))
+    };
+    if own.dot(outward) > LEAST_AGREEMENT {
+        worst(own)
+    } else {
+        worst(own).min(worst(outward))
+    }
 }

@@ -5,33 +5,28 @@
 //! minimise Σ (m · (Σᵢ wᵢ uᵢ − (c − x)))² + Σ a uᵢ², with x a sample of weights w, c its closest
 //! point on the target, m the normal there and uᵢ the step of vertex i. About halves the distance;
 //! steps along the surface draw edges to the ridges that they cross.
+//!
+//! Asked that way alone, faces know nothing of what they miss. Sites of the surface then call upon
+//! their closest faces by the same equation, x the closest point, c the site and m the way between
+//! (Hoppe et al. 1993), and quads wish to be squares meanwhile.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use super::least_squares::{Call, N_SAMPLES, Problem, SAMPLES, Samples, Wish};
 use super::project::lift_towards;
-use super::sheet::Sheet;
+use super::sheet::{Face, Sheet};
+use super::sites::Site;
+use super::skin::{Skin, normals, triangles};
 use super::target::Target;
 use crate::mesh::{Id, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
 
 /// Quality that a step may not spoil unless the face is worse already.
 const GUARDED_QUALITY: f64 = 0.35;
-/// Sweeps of the block Gauss-Seidel solver. Samples couple neighbours so weakly that this is as good
-/// as a factorisation, which takes ten times as long.
-const N_SWEEPS: usize = 6;
-/// How many samples a triangle has.
-const N_SAMPLES: usize = 6;
-/// Where: near the corners and in the middle of the sides.
-const SAMPLES: [[f64; 3]; N_SAMPLES] = [
-    [2.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0],
-    [1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0],
-    [1.0 / 6.0, 1.0 / 6.0, 2.0 / 3.0],
-    [0.5, 0.5, 0.0],
-    [0.0, 0.5, 0.5],
-    [0.5, 0.0, 0.5],
-];
+/// How many edges away a face is that a site calls upon, at most.
+const FARTHEST_CALL: f64 = 2.0;
 
 /// How strongly vertices are held while faces are fitted, relative to the samples' pull.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
@@ -51,171 +46,196 @@ impl Default for Anchor {
     }
 }
 
-/// A triangle's samples: the normals at their closest points and the distances to those planes,
-/// both weighted by how well the triangle agrees with the normal. Samples without a closest point
-/// weigh nothing. Single precision is enough for directions, and there are many.
-struct Samples {
-    corners: [VertexId; 3],
-    normals: [[f32; 3]; N_SAMPLES],
-    gaps: [f64; N_SAMPLES],
+/// What faces are fitted to.
+pub(super) struct Fit<'a> {
+    pub target: &'a Target,
+    /// About an edge: no vertex goes farther than half of it.
+    pub reach: f64,
+    pub anchor: Anchor,
+    /// What calls upon the faces; may be none.
+    pub sites: &'a [Site],
+    /// How much quads wish to be squares, relative to the samples' pull. At 0 faces are guarded
+    /// instead: no step spoils one.
+    pub squareness: f64,
 }
 
-/// Moves vertices to the least squares fit.
-///
-/// Pinned vertices stay, and none goes farther than half of `reach` or so that a face is spoiled.
-pub(super) fn straddle(
-    sheet: &mut Sheet,
-    target: &Target,
-    (reach, anchor): (f64, Anchor),
-    progress: &Progress,
-) -> Result<(), Cancelled> {
-    let triangles = triangles(sheet);
-    let samples = triangles.par_iter().map(|&corners| {
-        progress.check()?;
-        Ok(sample(sheet, target, corners, reach))
-    });
-    let samples = samples.collect::<Result<Vec<_>, Cancelled>>()?;
-    let steps = solve(sheet, &samples, anchor, progress)?;
-    for v in sheet.vertex_ids() {
-        let wanted = sheet.position(v) + steps[v].clamp_length_max(reach / 2.0);
-        lift_towards(sheet, v, wanted, GUARDED_QUALITY);
-    }
-    Ok(())
-}
-
-/// The faces cut into triangles, quads along the shorter diagonal.
-pub(super) fn triangles(sheet: &Sheet) -> Vec<[VertexId; 3]> {
-    let mut triangles = Vec::with_capacity(2 * sheet.faces().len());
-    for face in sheet.faces() {
-        match *face.corners() {
-            [a, b, c, d] => {
-                let along = |p, q| sheet.position(p).distance_squared(sheet.position(q));
-                if along(a, c) <= along(b, d) {
-                    triangles.extend([[a, b, c], [a, c, d]]);
-                } else {
-                    triangles.extend([[a, b, d], [b, c, d]]);
-                }
-            }
-            ref corners => triangles.push([corners[0], corners[1], corners[2]]),
+impl Fit<'_> {
+    /// Moves vertices to the least squares fit, so many times; pinned ones stay.
+    pub fn straddle(
+        &self,
+        sheet: &mut Sheet,
+        n_rounds: usize,
+        progress: &Progress,
+    ) -> Result<(), Cancelled> {
+        if self.squareness > 0.0 {
+            sheet.turn(&normals(sheet, &triangles(sheet)));
         }
-    }
-    triangles
-}
-
-fn sample(sheet: &Sheet, target: &Target, corners: [VertexId; 3], reach: f64) -> Samples {
-    let [a, b, c] = corners.map(|v| sheet.position(v));
-    let normal = (b - a).cross(c - a).normalize_or_zero();
-    let mut samples = Samples {
-        corners,
-        normals: [[0.0; 3]; N_SAMPLES],
-        gaps: [0.0; N_SAMPLES],
-    };
-    for (k, [u, v, w]) in SAMPLES.into_iter().enumerate() {
-        let x = a * u + b * v + c * w;
-        if let Some(foot) = target.closest_agreeing(x, normal, reach) {
-            let plane = target.normal(foot.face);
-            // Where the face does not follow the surface, as over a tip, the plane says little.
-            let plane_weight = normal.dot(plane);
-            samples.normals[k] = (plane * plane_weight).as_vec3().to_array();
-            samples.gaps[k] = plane_weight * plane.dot(foot.position - x);
+        for round in 0..n_rounds {
+            progress.at(round as f64 / n_rounds as f64)?;
+            self.once(sheet, progress)?;
         }
+        Ok(())
     }
-    samples
-}
 
-/// The steps of all vertices, by block Gauss-Seidel.
-fn solve(
-    sheet: &Sheet,
-    samples: &[Samples],
-    anchor: Anchor,
-    progress: &Progress,
-) -> Result<VertexMap<DVec3>, Cancelled> {
-    let fans = Fans::new(samples, sheet.n_vertices());
-    let mut steps = VertexMap::filled(sheet.n_vertices(), DVec3::ZERO);
-    for _ in 0..N_SWEEPS {
-        for v in sheet.vertex_ids().filter(|&v| !sheet.is_pinned(v)) {
-            if v.0 % 4096 == 0 {
-                progress.check()?;
-            }
-            let mut fit = Fit::held(anchor, sheet.point(v).normal, fans.of(v).len());
-            for &(triangle, corner) in fans.of(v) {
-                fit.add(&samples[triangle as usize], corner as usize, &steps);
-            }
-            let step = fit.matrix.inverse() * fit.pull;
-            if step.is_finite() {
-                steps[v] = step;
+    fn once(&self, sheet: &mut Sheet, progress: &Progress) -> Result<(), Cancelled> {
+        let triangles = triangles(sheet);
+        let samples = triangles.par_iter().map(|&corners| {
+            progress.check()?;
+            Ok(self.sample(sheet, corners))
+        });
+        let samples = samples.collect::<Result<Vec<_>, Cancelled>>()?;
+        let problem = Problem {
+            samples: &samples,
+            calls: &self.calls(sheet, progress)?,
+            wishes: &self.wishes(sheet),
+            anchor: self.anchor,
+        };
+        let steps = problem.solve(sheet, progress)?;
+        for v in sheet.vertex_ids() {
+            let wanted = sheet.position(v) + steps[v].clamp_length_max(self.reach / 2.0);
+            if self.squareness > 0.0 {
+                sheet.lift(v, wanted);
+            } else {
+                lift_towards(sheet, v, wanted, GUARDED_QUALITY);
             }
         }
-    }
-    Ok(steps)
-}
-
-/// The normal equations of one vertex's step.
-struct Fit {
-    matrix: DMat3,
-    pull: DVec3,
-}
-
-impl Fit {
-    /// Anchors alone, for a vertex of so many triangles.
-    fn held(anchor: Anchor, normal: DVec3, n_triangles: usize) -> Self {
-        let n = n_triangles.max(1) as f64;
-        let along = DMat3::from_diagonal(DVec3::splat(anchor.along * n));
-        let across = outer(normal, (anchor.across - anchor.along) * n);
-        Self {
-            matrix: along + across,
-            pull: DVec3::ZERO,
+        if self.squareness > 0.0 {
+            sheet.turn(&normals(sheet, &triangles));
         }
+        Ok(())
     }
 
-    /// Adds the samples of a triangle that has the vertex at a corner, its other corners staying.
-    fn add(&mut self, samples: &Samples, corner: usize, steps: &VertexMap<DVec3>) {
-        let [next, before] = [(corner + 1) % 3, (corner + 2) % 3];
-        let [ahead, behind] = [next, before].map(|i| steps[samples.corners[i]]);
-        for (k, weights) in SAMPLES.iter().enumerate() {
-            let normal = DVec3::from_array(samples.normals[k].map(f64::from));
-            let others = ahead * weights[next] + behind * weights[before];
-            let gap = samples.gaps[k] - normal.dot(others);
-            self.matrix += outer(normal, weights[corner] * weights[corner]);
-            self.pull += normal * (weights[corner] * gap);
-        }
-    }
-}
-
-/// The matrix weight · n nᵀ.
-fn outer(n: DVec3, weight: f64) -> DMat3 {
-    let n = [n, n * weight];
-    DMat3::from_cols(n[1] * n[0].x, n[1] * n[0].y, n[1] * n[0].z)
-}
-
-/// The triangles at each vertex, and which corner of them it is.
-struct Fans {
-    starts: Vec<u32>,
-    corners: Vec<(u32, u8)>,
-}
-
-impl Fans {
-    fn new(samples: &[Samples], n_vertices: usize) -> Self {
-        let mut starts = vec![0; n_vertices + 1];
-        for v in samples.iter().flat_map(|s| s.corners) {
-            starts[v.index() + 1] += 1;
-        }
-        for v in 0..n_vertices {
-            starts[v + 1] += starts[v];
-        }
-        let mut next = starts.clone();
-        let mut corners = vec![(0, 0); 3 * samples.len()];
-        for (triangle, s) in (0..).zip(samples) {
-            for (corner, v) in (0..).zip(s.corners) {
-                corners[next[v.index()] as usize] = (triangle, corner);
-                next[v.index()] += 1;
+    fn sample(&self, sheet: &Sheet, corners: [VertexId; 3]) -> Samples {
+        let [a, b, c] = corners.map(|v| sheet.position(v));
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let mut samples = Samples {
+            corners,
+            normals: [[0.0; 3]; N_SAMPLES],
+            gaps: [0.0; N_SAMPLES],
+        };
+        for (k, [u, v, w]) in SAMPLES.into_iter().enumerate() {
+            let x = a * u + b * v + c * w;
+            if let Some(foot) = self.target.closest_agreeing(x, normal, self.reach) {
+                let plane = self.target.normal(foot.face);
+                // Where the face does not follow the surface, as over a tip, the plane says little.
+                let plane_weight = normal.dot(plane);
+                samples.normals[k] = (plane * plane_weight).as_vec3().to_array();
+                samples.gaps[k] = plane_weight * plane.dot(foot.position - x);
             }
         }
-        Self { starts, corners }
+        samples
     }
 
-    fn of(&self, v: VertexId) -> &[(u32, u8)] {
-        let [from, to] = [self.starts[v.index()], self.starts[v.index() + 1]];
-        &self.corners[from as usize..to as usize]
+    /// The calls of all sites, which together weigh as much as all samples, sorted by triangle.
+    fn calls(&self, sheet: &Sheet, progress: &Progress) -> Result<Vec<Call>, Cancelled> {
+        if self.sites.is_empty() {
+            return Ok(Vec::new());
+        }
+        let skin = Skin::new(sheet, progress)?;
+        let root = ((N_SAMPLES * skin.corners.len()) as f64 / self.sites.len() as f64).sqrt();
+        let call = |site: &Site| {
+            progress.check()?;
+            let Some(foot) = skin.closest(site, FARTHEST_CALL * self.reach) else {
+                return Ok(None);
+            };
+            let triangle = foot.face.index();
+            let way = (site.position - foot.position).normalize_or(skin.normal(triangle));
+            Ok(Some(Call {
+                triangle: triangle as u32,
+                weights: foot.weights,
+                way: way * root,
+                gap: root * foot.distance_squared.sqrt(),
+            }))
+        };
+        let calls: Result<Vec<_>, Cancelled> = self.sites.par_iter().map(call).collect();
+        let mut calls: Vec<Call> = calls?.into_iter().flatten().collect();
+        calls.sort_by_key(|call| call.triangle);
+        Ok(calls)
+    }
+
+    /// The way of every vertex, along the surface, to the mean of where its quads were squares.
+    fn wishes(&self, sheet: &Sheet) -> VertexMap<Wish> {
+        let wish = |v: VertexId| {
+            let steps = sheet.ring(v).iter().map(|&face| {
+                let face = &sheet.faces()[face];
+                square_corner(sheet, face, v) - sheet.position(v)
+            });
+            let (sum, n) = steps.fold((DVec3::ZERO, 0.0), |(sum, n), step| (sum + step, n + 1.0));
+            let step = sum / n;
+            let normal = sheet.point(v).normal;
+            Wish {
+                step: step - normal * normal.dot(step),
+                weight: self.squareness * n,
+            }
+        };
+        if self.squareness > 0.0 {
+            sheet.vertex_ids().map(wish).collect()
+        } else {
+            VertexMap::filled(sheet.n_vertices(), Wish::default())
+        }
+    }
+}
+
+/// Where a vertex is when its quad becomes the square that is nearest to it.
+fn square_corner(sheet: &Sheet, face: &Face, vertex: VertexId) -> DVec3 {
+    let corner = face.find(vertex).expect("a ring's faces have the vertex");
+    let [here, next, far, before] = [0, 1, 2, 3].map(|i| sheet.position(face.corner(corner, i)));
+    let normal = (far - here).cross(before - next).normalize_or_zero();
+    let centre = (here + next + far + before) / 4.0;
+    centre + (here - far + normal.cross(before - next)) / 4.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::deform::project::project;
+    use crate::deform::sites;
+    use crate::measure::vertex_normals;
+    use crate::mesh::{FaceId, TriangleMesh};
+    use crate::shapes;
+    use crate::sphere::quad_sphere;
+    use crate::sphere_map::SphereMap;
+
+    /// Quads on a sphere with a spike, fitted; how high they reach and their mean quality.
+    fn fitted(n_sites: usize, squareness: f64) -> [f64; 2] {
+        let round = shapes::sphere(24);
+        let sphere = round.positions().iter().copied().collect();
+        let spike = |p: &DVec3| *p * (1.0 + 0.3 * (40.0 * (p.z - 1.0)).exp());
+        let pointed = round.positions().iter().map(spike).collect();
+        let mesh = TriangleMesh::new(pointed, round.faces().to_vec()).unwrap();
+        let target = Target::new(mesh.clone(), &Progress::none()).unwrap();
+        let map = SphereMap::prove(mesh, sphere).unwrap();
+        let mut sheet = Sheet::new(&map, vertex_normals(map.mesh()), &quad_sphere([5, 5, 5]));
+        let edge = sheet.mean_edge();
+        project(&mut sheet, &target, edge, &Progress::none()).unwrap();
+        let anchor = Anchor {
+            along: 0.02,
+            ..Anchor::default()
+        };
+        let fit = Fit {
+            target: &target,
+            reach: edge,
+            anchor,
+            sites: &sites::spread(&target, n_sites),
+            squareness,
+        };
+        fit.straddle(&mut sheet, 4, &Progress::none()).unwrap();
+        let heights = sheet.vertex_ids().map(|v| sheet.position(v).z);
+        let n_faces = sheet.faces().len();
+        let qualities = (0..n_faces).map(|f| sheet.quality(FaceId::from_index(f)));
+        let mean = qualities.sum::<f64>() / n_faces as f64;
+        [heights.fold(0.0, f64::max), mean]
+    }
+
+    #[test]
+    fn what_the_faces_miss_calls_upon_them() {
+        let [[without, _], [with, _]] = [0, 2_000].map(|n| fitted(n, 0.25));
+        assert!(with > without + 0.03, "{with} {without}");
+    }
+
+    #[test]
+    fn quads_become_squares_while_they_are_fitted() {
+        let [[_, little], [_, much]] = [0.01, 1.0].map(|squareness| fitted(2_000, squareness));
+        assert!(much > little + 0.01, "{much} {little}");
     }
 }

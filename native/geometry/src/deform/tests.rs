@@ -160,8 +160,23 @@ fn crosses(mesh: &TriangleMesh) -> FaceMap<DVec3> {
     mesh.face_ids().map(cross).collect()
 }
 
+/// Quads without sharp lines.
+fn flowing<'a>(
+    quads: &'a PolygonMesh,
+    wanted: &'a [DVec3],
+    (crosses, sizes): (&'a FaceMap<DVec3>, &'a FaceMap<f64>),
+) -> Flowing<'a> {
+    Flowing {
+        quads,
+        wanted,
+        crosses,
+        sizes,
+        seams: &[],
+    }
+}
+
 /// A quad sphere whose vertices are led away from their places by `noise`, then relaxed.
-fn flowed(mesh: &TriangleMesh, noise: f64, n_flow_relaxations: usize) -> Deformed {
+fn flowed(mesh: &TriangleMesh, noise: f64, settings: &Settings) -> Deformed {
     let map = radial_map(mesh);
     let quads = quad_sphere([7, 7, 7]);
     let crosses = crosses(mesh);
@@ -171,19 +186,9 @@ fn flowed(mesh: &TriangleMesh, noise: f64, n_flow_relaxations: usize) -> Deforme
         .iter()
         .map(|&p| map.surface_position(map.locate(p)) + noise * (p * 97.0).map(f64::sin))
         .collect();
-    let flowing = Flowing {
-        quads: &quads,
-        wanted: &wanted,
-        crosses: &crosses,
-        sizes: &sizes,
-        seams: &[],
-    };
-    let settings = Settings {
-        n_flow_relaxations,
-        ..Settings::default()
-    };
+    let flowing = flowing(&quads, &wanted, (&crosses, &sizes));
     let target = target(mesh.clone());
-    deform_flow(&map, flowing, &target, &settings, &Progress::none()).unwrap()
+    deform_flow(&map, flowing, &target, settings, &Progress::none()).unwrap()
 }
 
 #[test]
@@ -206,7 +211,15 @@ fn flowing_quads_turn_along_the_crosses() {
             .collect();
         sines.iter().sum::<f64>() / sines.len() as f64
     };
-    let [before, after] = [0, 60].map(|n| misalignment(&flowed(&mesh, 0.1, n)));
+    // The fit makes squares of the quads, which hides how they lay.
+    let [before, after] = [0, 60].map(|n_flow_relaxations| {
+        let settings = Settings {
+            n_flow_relaxations,
+            n_flow_straddles: 0,
+            ..Settings::default()
+        };
+        misalignment(&flowed(&mesh, 0.1, &settings))
+    });
     assert!(after < 0.5 * before, "{after} {before}");
 }
 
@@ -216,13 +229,7 @@ fn momentum_lasts_from_one_call_to_the_next() {
     let (map, crosses) = (radial_map(&mesh), crosses(&mesh));
     let sizes = FaceMap::filled(crosses.len(), 1.0);
     let quads = quad_sphere([5, 6, 7]);
-    let flowing = Flowing {
-        quads: &quads,
-        wanted: quads.positions(),
-        crosses: &crosses,
-        sizes: &sizes,
-        seams: &[],
-    };
+    let flowing = flowing(&quads, quads.positions(), (&crosses, &sizes));
     let after = |calls: &[usize]| {
         let mut sheet = Sheet::new(&map, vertex_normals(map.mesh()), &quads);
         let mut follower = Follower::new(&map, &sheet, flowing);
@@ -238,7 +245,7 @@ fn momentum_lasts_from_one_call_to_the_next() {
 fn flowing_quads_stay_a_cover_without_inverted_quads() {
     for seed in 0..4 {
         let mesh = shapes::blob(seed, 10);
-        let result = flowed(&mesh, 0.1, 30);
+        let result = flowed(&mesh, 0.1, &Settings::default());
         assert_eq!(check_cover(&result.mesh, &result.sphere), Ok(()));
         for face in result.mesh.faces() {
             let p = [0, 1, 2, 3].map(|i| result.mesh.position(face[i]));
@@ -258,13 +265,7 @@ fn what_flows_needs_a_cross_for_every_face() {
     let quads = quad_sphere([3, 3, 3]);
     let crosses = FaceMap::filled(5, DVec3::X);
     let sizes = FaceMap::filled(5, 1.0);
-    let flowing = Flowing {
-        quads: &quads,
-        wanted: quads.positions(),
-        crosses: &crosses,
-        sizes: &sizes,
-        seams: &[],
-    };
+    let flowing = flowing(&quads, quads.positions(), (&crosses, &sizes));
     let target = target(mesh);
     let result = deform_flow(
         &map,

@@ -6,8 +6,9 @@
 
 use glam::DVec3;
 
+use super::follow::Stars;
 use super::sheet::{Point, Sheet};
-use crate::mesh::{PolygonMesh, VertexId, VertexMap};
+use crate::mesh::{FaceId, PolygonMesh, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
 
 /// Quality below which a face is opened.
@@ -18,14 +19,58 @@ const ENOUGH: f64 = 0.3;
 const REACHES: [f64; 5] = [0.4, 0.2, 0.1, 0.05, 0.02];
 /// Rounds over the vertices of bad faces; most are open after five.
 const N_ROUNDS: usize = 40;
+/// Rings of faces around a knot that are pulled smooth with it, at most.
+const MOST_RINGS: usize = 4;
+/// How often each of their vertices goes to the middle of its neighbours.
+const N_SMOOTHINGS: usize = 8;
 /// What a vertex a mean edge away from where it was costs, against 0.09 for a face without area.
 const COST: f64 = 0.02;
 /// The least share by which a move has to lower the sum of both.
 const LEAST_GAIN: f64 = 1e-6;
 
 /// Moves the vertices of bad faces in space until none is left or no move helps; returns how many
-/// moves that took.
-pub(super) fn untangle(sheet: &mut Sheet, progress: &Progress) -> Result<usize, Cancelled> {
+/// faces were inverted, and how many moves it took.
+///
+/// What is still inverted then is a knot. It is pulled smooth with more and more of what is around
+/// it, and stays so where that leaves less inverted.
+pub(super) fn untangle(sheet: &mut Sheet, progress: &Progress) -> Result<[usize; 2], Cancelled> {
+    let n_knotted = worse_than(sheet, 0.0).len();
+    let mut n_moves = open_all(sheet, progress)?;
+    for n_rings in 1..=MOST_RINGS {
+        let knots = worse_than(sheet, 0.0);
+        if knots.is_empty() {
+            break;
+        }
+        let ids = sheet.vertex_ids();
+        let before: VertexMap<DVec3> = ids.map(|v| sheet.position(v)).collect();
+        smooth(sheet, &grown(sheet, corners(sheet, &knots), n_rings));
+        n_moves += open_all(sheet, progress)?;
+        if worse_than(sheet, 0.0).len() >= knots.len() {
+            for v in sheet.vertex_ids() {
+                sheet.lift(v, before[v]);
+            }
+        }
+    }
+    Ok([n_knotted, n_moves])
+}
+
+/// Moves vertices that are not pinned to the middle of their neighbours, some times.
+fn smooth(sheet: &mut Sheet, vertices: &[VertexId]) {
+    let stars = Stars::new(sheet);
+    for _ in 0..N_SMOOTHINGS {
+        for &v in vertices {
+            if sheet.is_pinned(v) {
+                continue;
+            }
+            let star = stars.of(v);
+            let sum: DVec3 = star.iter().map(|&other| sheet.position(other)).sum();
+            sheet.lift(v, sum / star.len() as f64);
+        }
+    }
+}
+
+/// Opens bad faces, vertex by vertex, round by round.
+fn open_all(sheet: &mut Sheet, progress: &Progress) -> Result<usize, Cancelled> {
     let edge = sheet.mean_edge();
     let ids = sheet.vertex_ids();
     let starts: VertexMap<DVec3> = ids.map(|v| sheet.position(v)).collect();
@@ -33,7 +78,7 @@ pub(super) fn untangle(sheet: &mut Sheet, progress: &Progress) -> Result<usize, 
     for _ in 0..N_ROUNDS {
         progress.check()?;
         let before = n_moves;
-        for v in bad_vertices(sheet) {
+        for v in corners(sheet, &worse_than(sheet, BAD)) {
             n_moves += usize::from(!sheet.is_pinned(v) && open(sheet, v, edge, starts[v]));
         }
         if n_moves == before {
@@ -57,15 +102,31 @@ pub(super) fn n_inverted(mesh: &PolygonMesh) -> usize {
     mesh.faces().filter(is_inverted).count()
 }
 
-/// The vertices of bad faces, each once.
-fn bad_vertices(sheet: &Sheet) -> Vec<VertexId> {
-    let bad = sheet
-        .faces()
-        .iter_ids()
-        .filter(|&(id, _)| sheet.quality(id) < BAD);
-    let mut vertices: Vec<_> = bad.flat_map(|(_, face)| face.corners().to_vec()).collect();
+/// The faces of less than a quality.
+fn worse_than(sheet: &Sheet, quality: f64) -> Vec<FaceId> {
+    let ids = sheet.faces().ids();
+    ids.filter(|&face| sheet.quality(face) < quality).collect()
+}
+
+/// The corners of faces, each once.
+fn corners(sheet: &Sheet, faces: &[FaceId]) -> Vec<VertexId> {
+    let corners = faces.iter().flat_map(|&face| sheet.faces()[face].corners());
+    let mut vertices: Vec<_> = corners.copied().collect();
     vertices.sort_unstable();
     vertices.dedup();
+    vertices
+}
+
+/// The vertices and so many rings of faces around them.
+fn grown(sheet: &Sheet, mut vertices: Vec<VertexId>, n_rings: usize) -> Vec<VertexId> {
+    for _ in 0..n_rings {
+        let around: Vec<_> = vertices
+            .iter()
+            .flat_map(|&v| sheet.ring(v))
+            .copied()
+            .collect();
+        vertices = corners(sheet, &around);
+    }
     vertices
 }
 
@@ -130,16 +191,35 @@ mod tests {
             let away = normal.any_orthonormal_vector() * (1.3 * edge);
             sheet.lift(v, sheet.position(v) + away);
         }
-        let moved = bad_vertices(&sheet);
+        let moved = worse_than(&sheet, BAD);
         let before: VertexMap<DVec3> = sheet.vertex_ids().map(|v| sheet.position(v)).collect();
         assert!(!moved.is_empty());
-        let n_moves = untangle(&mut sheet, &Progress::none()).unwrap();
-        assert!(n_moves > 0);
+        let [n_knotted, n_moves] = untangle(&mut sheet, &Progress::none()).unwrap();
+        assert!(n_knotted > 0 && n_moves > 0);
         assert!(sheet.faces().ids().all(|face| sheet.quality(face) > 0.0));
         let n_stayed = sheet
             .vertex_ids()
             .filter(|&v| sheet.position(v) == before[v]);
         assert!(2 * n_stayed.count() > sheet.n_vertices());
-        assert_eq!(untangle(&mut sheet, &Progress::none()).unwrap(), 0);
+        assert_eq!(untangle(&mut sheet, &Progress::none()).unwrap(), [0, 0]);
+    }
+
+    #[test]
+    fn a_knot_is_pulled_smooth() {
+        let mesh = shapes::sphere(12);
+        let sphere = mesh.positions().iter().copied().collect();
+        let map = SphereMap::prove(mesh, sphere).unwrap();
+        let mut sheet = Sheet::new(&map, vertex_normals(map.mesh()), &quad_sphere([8, 8, 8]));
+        // A cap turned inside out: no vertex alone can mend that.
+        let cap = sheet.vertex_ids().filter(|&v| sheet.position(v).z > 0.85);
+        for v in cap.collect::<Vec<_>>() {
+            let p = sheet.position(v);
+            sheet.lift(v, DVec3::new(-p.x, p.y, p.z));
+        }
+        let mut alone = sheet.clone();
+        open_all(&mut alone, &Progress::none()).unwrap();
+        assert!(!worse_than(&alone, 0.0).is_empty());
+        untangle(&mut sheet, &Progress::none()).unwrap();
+        assert_eq!(worse_than(&sheet, 0.0), []);
     }
 }

@@ -25,6 +25,9 @@ const TRIANGLES_PER_QUAD: usize = 5;
 /// Points of the surface farther from the quads than this many edges are missed: a limb is cut off.
 const MOST_MISSED: f64 = 2.0;
 
+/// One in so many quads may be inverted before it is opened; of more, shape is lost.
+const QUADS_PER_KNOT: usize = 50;
+
 /// Whether a part's quads flow.
 #[derive(Clone, PartialEq, Debug, Serialize)]
 #[serde(tag = "status", rename_all = "kebab-case")]
@@ -94,7 +97,10 @@ pub struct FlowedPart {
 impl FlowedPart {
     /// How many quads fail the gate.
     fn n_failed(&self) -> usize {
-        self.deformed.report.n_inverted + self.n_missed
+        let report = &self.deformed.report;
+        let n_quads = self.deformed.mesh.n_faces();
+        let n_knotted = report.n_knotted.saturating_sub(n_quads / QUADS_PER_KNOT);
+        report.n_inverted + self.n_missed + n_knotted
     }
 }
 
