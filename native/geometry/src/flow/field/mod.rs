@@ -35,8 +35,8 @@ pub use shape::{Axes, axes, in_chart};
 /// How the field follows the shape.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Settings {
-    /// How strongly crosses follow the principal directions; 0 gives the smoothest field. At 2 the
-    /// field is 1.5° closer to them than at 1, and the quads are slightly less even.
+    /// How strongly crosses follow the principal directions; 0 gives the smoothest field. Below 1.5
+    /// quads lie more aslant to the shape; above they are less even and less square.
     pub alignment: f64,
     /// Edges whose faces' normals differ by more than this angle are followed.
     pub sharp_angle: f64,
@@ -45,7 +45,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            alignment: 1.0,
+            alignment: 1.5,
             sharp_angle: TAU / 9.0,
         }
     }
