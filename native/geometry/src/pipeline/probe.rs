@@ -61,6 +61,9 @@ mod tests {
         let target = Target::new(far, &Progress::none()).unwrap();
         let gaps = halves.gaps(&target);
         assert!((2_000..=4_000).contains(&gaps.len()), "{}", gaps.len());
-        assert!(gaps.iter().all(|gap| (0.999..1.1).contains(gap)), "{gaps:?}");
+        assert!(
+            gaps.iter().all(|gap| (0.999..1.1).contains(gap)),
+            "{gaps:?}"
+        );
     }
 }
