@@ -22,11 +22,16 @@ impl Marks {
         Self(edges.iter().map(key).collect())
     }
 
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// The marked edges of a part, on both sides of each.
     pub fn on(&self, part: &TriangleMesh) -> HalfedgeMap<bool> {
         let is_marked = |h| {
             let [a, b] = [part.origin(h), part.target(h)].map(|v| part.position(v));
-            !self.0.is_empty() && self.0.contains(&key(a, b))
+            !self.is_empty() && self.0.contains(&key(a, b))
         };
         part.halfedge_ids().map(is_marked).collect()
     }

@@ -130,6 +130,7 @@ impl Wanted<'_> {
                 n_quads: self.n_faces,
                 settings: self.settings,
                 density,
+                is_marked: !self.marks.is_empty(),
                 axis,
             };
             match flow_part(&map, target, wanted, clock, &progress.part("", 0.0, 0.9))? {
