@@ -129,7 +129,7 @@ impl Weights {
         bytes.extend(VERSION.to_le_bytes());
         bytes.extend((header.len() as u32).to_le_bytes());
         bytes.extend((parameters.len() as u64).to_le_bytes());
-        bytes.extend(fnv([&header, &parameters]).to_le_bytes());
+        bytes.extend(fnv(header.iter().chain(&parameters)).to_le_bytes());
         bytes.extend(header);
         bytes.extend(parameters);
         bytes
@@ -203,7 +203,8 @@ fn parts(bytes: &[u8]) -> Result<(&[u8], &[u8]), ReadWeightsError> {
         return Err(ReadWeightsError::Length { found, wanted });
     }
     let (header, parameters) = bytes[FRONT..].split_at(n_header as usize);
-    let [found, wanted] = [fnv([header, parameters]), number(24, 8)];
+    let found = fnv(header.iter().chain(parameters));
+    let wanted = number(24, 8);
     if found != wanted {
         return Err(ReadWeightsError::Damaged { found, wanted });
     }
@@ -249,8 +250,8 @@ fn check_sizes(header: &Header) -> Result<(), ReadWeightsError> {
 }
 
 /// FNV-1a, 64 bits.
-fn fnv(parts: [&[u8]; 2]) -> u64 {
-    let bytes = parts.into_iter().flatten();
+pub fn fnv<'a>(bytes: impl IntoIterator<Item = &'a u8>) -> u64 {
+    let bytes = bytes.into_iter();
     bytes.fold(0xcbf2_9ce4_8422_2325, |hash, &byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
     })

@@ -88,7 +88,8 @@ impl Faces {
     }
 }
 
-fn squared(rows: Tensor<2>) -> Tensor<2> {
+/// The squared length of every row.
+pub fn squared(rows: Tensor<2>) -> Tensor<2> {
     (rows.clone() * rows).sum_dim(1)
 }
 

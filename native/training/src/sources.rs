@@ -7,10 +7,11 @@ use std::sync::Arc;
 
 use orbflow_geometry::mesh::io::Format;
 use orbflow_geometry::mesh::{PolygonMesh, TriangleMesh, io as mesh_io};
+use orbflow_network::weights::fnv;
 use thiserror::Error;
 
 use crate::licence::Licences;
-use crate::set::{Split, fnv};
+use crate::set::Split;
 use crate::shapes::shape;
 use crate::zips::Zip;
 

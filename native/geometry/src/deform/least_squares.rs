@@ -61,7 +61,8 @@ impl Problem<'_> {
     /// The steps of all vertices that are not pinned, by block Gauss-Seidel.
     pub fn solve(&self, sheet: &Sheet, progress: &Progress) -> Result<VertexMap<DVec3>, Cancelled> {
         let fans = Fans::new(self.samples, sheet.n_vertices());
-        let calls = starts(self.calls, self.samples.len());
+        let triangles = self.calls.iter().map(|call| call.triangle as usize);
+        let calls = starts(triangles, self.samples.len());
         let mut steps = VertexMap::filled(sheet.n_vertices(), DVec3::ZERO);
         for _ in 0..N_SWEEPS {
             for v in sheet.vertex_ids().filter(|&v| !sheet.is_pinned(v)) {
@@ -74,7 +75,8 @@ impl Problem<'_> {
                     let samples = &self.samples[triangle];
                     let others = others(samples.corners, corner as usize, &steps);
                     fit.add(samples, corner as usize, others);
-                    for call in &self.calls[calls[triangle]..calls[triangle + 1]] {
+                    let [from, to] = [calls[triangle], calls[triangle + 1]];
+                    for call in &self.calls[from as usize..to as usize] {
                         fit.answer(call, corner as usize, others);
                     }
                 }
@@ -140,17 +142,18 @@ fn outer(n: DVec3, weight: f64) -> DMat3 {
     DMat3::from_cols(n[1] * n[0].x, n[1] * n[0].y, n[1] * n[0].z)
 }
 
-/// Where the calls of every triangle begin, and where the last end.
-fn starts(calls: &[Call], n_triangles: usize) -> Vec<usize> {
-    let mut starts = vec![0; n_triangles + 1];
-    for call in calls {
-        starts[call.triangle as usize + 1] += 1;
+/// Where the things of each of `n` owners begin, sorted by their owners, and where the last end.
+fn starts(owners: impl Iterator<Item = usize>, n: usize) -> Vec<u32> {
+    let mut starts = vec![0; n + 1];
+    for owner in owners {
+        starts[owner + 1] += 1;
     }
-    for i in 0..n_triangles {
+    for i in 0..n {
         starts[i + 1] += starts[i];
     }
     starts
 }
+
 /// The triangles at each vertex, and which corner of them it is.
 struct Fans {
     starts: Vec<u32>,
@@ -159,13 +162,8 @@ struct Fans {
 
 impl Fans {
     fn new(samples: &[Samples], n_vertices: usize) -> Self {
-        let mut starts = vec![0; n_vertices + 1];
-        for v in samples.iter().flat_map(|s| s.corners) {
-            starts[v.index() + 1] += 1;
-        }
-        for v in 0..n_vertices {
-            starts[v + 1] += starts[v];
-        }
+        let owners = samples.iter().flat_map(|s| s.corners).map(Id::index);
+        let starts = starts(owners, n_vertices);
         let mut next = starts.clone();
         let mut corners = vec![(0, 0); 3 * samples.len()];
         for (triangle, s) in (0..).zip(samples) {

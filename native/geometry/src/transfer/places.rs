@@ -59,13 +59,16 @@ pub fn places(
     let faces: Vec<FaceId> = output.face_ids().collect();
     for chunk in faces.chunks(FACES) {
         progress.at(places.faces.len() as f64 / faces.len() as f64)?;
-        let face = |&face: &FaceId| Face::new(output, face).places(source, old, cuts);
-        let found: Vec<_> = chunk.par_iter().map(face).collect();
-        for (&face, (under, corners)) in chunk.iter().zip(found) {
-            let Face { normal, radius, .. } = Face::new(output, face);
-            for v in output.face(face) {
-                normals[v.index()] += normal;
-                reach[v.index()] = reach[v.index()].max(radius);
+        let found = chunk.par_iter().map(|&id| {
+            let face = Face::new(output, id);
+            let places = face.places(source, old, cuts);
+            (face, places)
+        });
+        let found: Vec<_> = found.collect();
+        for (&id, (face, (under, corners))) in chunk.iter().zip(found) {
+            for v in output.face(id) {
+                normals[v.index()] += face.normal;
+                reach[v.index()] = reach[v.index()].max(face.radius);
             }
             places.faces.push(under);
             places.corners.extend(corners);

@@ -41,13 +41,6 @@ const BLOCK_FRONT: usize = 32;
 /// The longest text that is believed: an entry has three parts and a few sentences.
 const MAX_TEXT: usize = 1 << 20;
 
-/// FNV-1a, 64 bits.
-pub fn fnv(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-    })
-}
-
 /// The little-endian number in up to eight bytes.
 fn number(digits: &[u8]) -> u64 {
     let digits = digits.iter().rev();

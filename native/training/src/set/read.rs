@@ -6,13 +6,14 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use orbflow_geometry::progress::{Cancelled, Progress};
+use orbflow_network::weights::fnv;
 use rayon::prelude::*;
 use serde::de::DeserializeOwned;
 use thiserror::Error;
 
 use super::encode::{PartError, Shape};
 use super::manifest::{Head, Manifest, Source, Split};
-use super::{BLOCK, BLOCK_FRONT, FRONT, MAGIC, MAX_TEXT, VERSION, fnv, number};
+use super::{BLOCK, BLOCK_FRONT, FRONT, MAGIC, MAX_TEXT, VERSION, number};
 
 /// Parts that are read between two reports of progress.
 const N_AT_ONCE: usize = 64;

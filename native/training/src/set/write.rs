@@ -4,12 +4,13 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+use orbflow_network::weights::fnv;
 use thiserror::Error;
 
 use super::encode::Shape;
 use super::manifest::{Counts, Head, Source};
 use super::read::{Set, SetError};
-use super::{BLOCK, MAGIC, VERSION, fnv};
+use super::{BLOCK, MAGIC, VERSION};
 
 /// A set that is being written.
 #[derive(Debug)]

@@ -16,6 +16,7 @@ use orbflow_geometry::mesh::{Id, PolygonMesh, TriangleMesh};
 use serde::{Deserialize, Serialize};
 
 use crate::evaluate::rebuilt::samples;
+use crate::loss::squared;
 use crate::net::numbers;
 
 /// How targets are made. The weights are the thesis's; it took 80,000 steps, a quarter of them stiff.
@@ -174,10 +175,6 @@ impl Problem {
         let away = sums / self.valence.clone() - q;
         squared(away).add_scalar(1e-12).sqrt().mean()
     }
-}
-
-fn squared(rows: Tensor<2>) -> Tensor<2> {
-    (rows.clone() * rows).sum_dim(1)
 }
 
 fn cross(p: &Tensor<2>, q: &Tensor<2>) -> Tensor<2> {

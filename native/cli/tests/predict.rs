@@ -1,0 +1,59 @@
+//! Prediction alone: a mesh of the network's proposal, or words.
+
+mod support;
+
+use std::fs;
+use std::path::Path;
+
+use orbflow_network::weights::Weights;
+use serde_json::Value;
+use support::{Folder, ball, run};
+
+/// The committed weights.
+fn weights() -> String {
+    let runs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../training/runs");
+    let path = runs.join("2026-11-24/weights.orbflow");
+    path.to_str().expect("the path is text").to_owned()
+}
+
+#[test]
+fn predict_makes_a_mesh_of_the_proposal_and_tells_what_it_cost() {
+    let folder = Folder::new();
+    let input = folder.write("ball.obj", &ball(""));
+    let [output, report] = ["out.obj", "r.json"].map(|name| folder.path(name));
+    let files = ["predict", &input, &output, "--report", &report, "--weights"];
+    let done = run(&[&files[..], &[&weights(), "--faces", "200"]].concat());
+    assert_eq!((done.code, done.err.as_str()), (0, ""));
+    let report: Value = serde_json::from_str(&fs::read_to_string(report).unwrap()).unwrap();
+    let embedding = &report["embedding"];
+    assert_eq!(embedding["predictor"], "network");
+    assert_eq!(embedding["repair"]["fell_back_to_solver"], false);
+    for told in ["energy", "n_folds", "n_vertices"] {
+        assert!(embedding["proposal"][told].is_number(), "{told}");
+    }
+    assert!(embedding["repair"]["n_moved"].is_number() && embedding["n_relaxations"].is_number());
+    assert!(fs::exists(output).unwrap());
+}
+
+/// Weights that send every vertex to one place.
+#[test]
+fn predict_says_that_a_proposal_was_no_use_and_writes_the_report_alone() {
+    let folder = Folder::new();
+    let input = folder.write("ball.obj", &ball(""));
+    let mut weights = Weights::from_bytes(&fs::read(weights()).unwrap()).unwrap();
+    // The last three parameters are the bias of the head.
+    let last = weights.parameters.len() - 3;
+    weights.parameters[last..].copy_from_slice(&[6e4, 0.0, 0.0]);
+    let [path, output, report] = ["bad.orbflow", "out.obj", "r.json"].map(|n| folder.path(n));
+    fs::write(&path, weights.to_bytes()).unwrap();
+    let files = ["predict", &input, &output, "--weights", &path];
+    let refused = run(&[&files[..], &["--report", &report, "--faces", "200"]].concat());
+    assert_eq!(refused.code, 3, "{}", refused.err);
+    let words = "ball.obj: the proposal for part 1 of 1 is beyond repair";
+    assert!(refused.err.contains(words), "{}", refused.err);
+    assert_eq!(folder.names(), ["bad.orbflow", "ball.obj", "r.json"]);
+    // Remesh does it all the same, by the solver.
+    let files = ["remesh", &input, &output, "--predictor", "network"];
+    let done = run(&[&files[..], &["--weights", &path, "--faces", "200"]].concat());
+    assert_eq!(done.code, 0, "{}", done.err);
+}
