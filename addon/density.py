@@ -5,6 +5,9 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from . import attributes
+from .artist import groups
+
 # How bright a colour is, as Blender itself turns colours into numbers.
 _BRIGHTNESS = np.array((0.2126, 0.7152, 0.0722), np.float32)
 
@@ -28,21 +31,13 @@ def read(thing: bpy.types.Object, name: str) -> NDArray[np.float32] | None:
     """
     if not name:
         return None
-    if (group := thing.vertex_groups.get(name)) is not None:
-        return _weights(thing.data, group.index)
+    for group in groups.read(thing):
+        if group.name == name:
+            return group.weights
     if (attribute := thing.data.color_attributes.get(name)) is not None:
         return _brightness(thing.data, attribute)
     offered = ", ".join(each for each, _ in names(thing)) or "none"
     raise NoSuchName(f"no vertex group or color attribute is named '{name}'; there are: {offered}")
-
-
-def _weights(mesh: bpy.types.Mesh, group: int) -> NDArray[np.float32]:
-    weights = np.zeros(len(mesh.vertices), np.float32)
-    for i, vertex in enumerate(mesh.vertices):
-        for each in vertex.groups:
-            if each.group == group:
-                weights[i] = each.weight
-    return weights
 
 
 def _brightness(mesh: bpy.types.Mesh, attribute: bpy.types.Attribute) -> NDArray[np.float32]:
@@ -52,8 +47,7 @@ def _brightness(mesh: bpy.types.Mesh, attribute: bpy.types.Attribute) -> NDArray
     bright = (colours.reshape(-1, 4)[:, :3] @ _BRIGHTNESS).clip(0, 1)
     if attribute.domain == "POINT":
         return bright
-    corners = np.empty(len(mesh.loops), np.int32)
-    mesh.attributes[".corner_vert"].data.foreach_get("value", corners)
+    corners = attributes.corner_verts(mesh)
     n_vertices = len(mesh.vertices)
     sums = np.bincount(corners, bright, n_vertices)
     counts = np.bincount(corners, minlength=n_vertices)

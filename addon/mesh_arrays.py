@@ -13,7 +13,7 @@ import numpy as np
 import orbflow_native
 from numpy.typing import NDArray
 
-from .artist.edges import ends_of
+from . import attributes
 
 Int = NDArray[np.int32]
 Float = NDArray[np.float32]
@@ -40,18 +40,10 @@ _MARKS = {
 
 def read(mesh: bpy.types.Mesh, marks: Iterable[str] = ()) -> MeshArrays:
     """Copies the arrays of a mesh that is not in edit mode, and the edges with any of the marks."""
-    loop_start = np.empty(len(mesh.polygons), np.int32)
-    mesh.polygons.foreach_get("loop_start", loop_start)
-    positions = np.empty(3 * len(mesh.vertices), np.float32)
-    if len(mesh.vertices):
-        mesh.attributes["position"].data.foreach_get("vector", positions)
-    corners = np.empty(len(mesh.loops), np.int32)
-    if len(mesh.loops):
-        mesh.attributes[".corner_vert"].data.foreach_get("value", corners)
     return MeshArrays(
-        positions.reshape(-1, 3),
-        loop_start,
-        corners,
+        attributes.positions(mesh),
+        attributes.loop_starts(mesh),
+        attributes.corner_verts(mesh),
         _materials(mesh),
         _marked(mesh, marks),
     )
@@ -77,7 +69,7 @@ def _marked(mesh: bpy.types.Mesh, marks: Iterable[str]) -> Int | None:
         found |= values > 0
     if not found.any():
         return None
-    return ends_of(mesh)[found]
+    return attributes.edge_verts(mesh)[found]
 
 
 def write(arrays: MeshArrays | orbflow_native.Remeshed, like: bpy.types.Mesh) -> bpy.types.Mesh:

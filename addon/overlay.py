@@ -18,7 +18,7 @@ from gpu_extras.batch import batch_for_shader
 from mathutils import Matrix
 from numpy.typing import NDArray
 
-from . import panel
+from . import attributes, panel
 
 Colour = tuple[float, float, float, float]
 
@@ -112,22 +112,14 @@ def _forget(_scene: object, depsgraph: bpy.types.Depsgraph | None = None) -> Non
 def irregular(mesh: bpy.types.Mesh) -> Irregular:
     """Finds the irregular vertices: not of valence 4 among quads, not of 6 among triangles."""
     n = len(mesh.vertices)
-    edges = _read(mesh, ".edge_verts", "value", 2 * len(mesh.edges), np.int32).reshape(-1, 2)
-    sides = _read(mesh, ".corner_edge", "value", len(mesh.loops), np.int32)
+    edges, sides = attributes.edge_verts(mesh), attributes.corner_edges(mesh)
     is_border = np.zeros(n, bool)
     is_border[edges[np.bincount(sides, minlength=len(edges)) != 2]] = True
     valence = np.bincount(edges.ravel(), minlength=n)
     regular = 4 if 2 * len(mesh.loops) > 7 * len(mesh.polygons) else 6
     excess = np.where(is_border | (valence == 0), 0, valence - regular)
-    positions = _read(mesh, "position", "vector", 3 * n, np.float32).reshape(-1, 3)
+    positions = attributes.positions(mesh)
     return Irregular(positions[excess == -1], positions[excess == 1], positions[np.abs(excess) > 1])
-
-
-def _read(mesh: bpy.types.Mesh, name: str, field: str, n: int, kind: type) -> NDArray:
-    values = np.empty(n, kind)
-    if n:
-        mesh.attributes[name].data.foreach_get(field, values)
-    return values
 
 
 def figures(thing: bpy.types.Object, what: str) -> list[Figure]:

@@ -8,6 +8,7 @@ import numpy as np
 import orbflow_native
 from numpy.typing import NDArray
 
+from ..attributes import edge_verts
 from . import layers
 from .layers import Layer
 
@@ -31,7 +32,7 @@ def read(mesh: bpy.types.Mesh) -> Edges | None:
     if not is_left.any():
         return None
     (rows,) = is_left.nonzero()
-    return Edges(ends_of(mesh)[rows], [layer.taken(rows) for layer in found])
+    return Edges(edge_verts(mesh)[rows], [layer.taken(rows) for layer in found])
 
 
 def write(mesh: bpy.types.Mesh, edges: Edges, result: orbflow_native.Remeshed) -> None:
@@ -44,14 +45,6 @@ def write(mesh: bpy.types.Mesh, edges: Edges, result: orbflow_native.Remeshed) -
             Layer(layer.name, layer.kind, values).write(mesh, "EDGE")
 
 
-def ends_of(mesh: bpy.types.Mesh) -> Int:
-    """The vertices of every edge, (E, 2)."""
-    ends = np.empty(2 * len(mesh.edges), np.int32)
-    if len(ends):
-        mesh.attributes[".edge_verts"].data.foreach_get("value", ends)
-    return ends.reshape(-1, 2)
-
-
 def _find(mesh: bpy.types.Mesh, ends: Int) -> NDArray[np.intp]:
     """Which edges of a mesh have these ends."""
 
@@ -59,6 +52,6 @@ def _find(mesh: bpy.types.Mesh, ends: Int) -> NDArray[np.intp]:
         low, high = np.sort(ends, axis=1).astype(np.int64).T
         return low * len(mesh.vertices) + high
 
-    own = key(ends_of(mesh))
+    own = key(edge_verts(mesh))
     order = np.argsort(own)
     return order[np.searchsorted(own, key(ends), sorter=order)]

@@ -8,8 +8,8 @@ import numpy as np
 import orbflow_native
 from numpy.typing import NDArray
 
+from .. import attributes
 from . import layers
-from .edges import ends_of
 from .layers import Layer, Mix
 
 Int = NDArray[np.int32]
@@ -36,7 +36,7 @@ def read(mesh: bpy.types.Mesh) -> Elements:
     """Reads the attributes of a mesh."""
     found = {domain: list(layers.read(mesh, domain)) for domain in _DOMAINS}
     maps = [layer.values for layer in found["CORNER"] if layer.kind == "FLOAT2"]
-    corners = _corners(mesh, ".corner_vert")
+    corners = attributes.corner_verts(mesh)
     return Elements(found, corners, _cuts(mesh, corners, maps), _active(mesh))
 
 
@@ -58,21 +58,13 @@ def write(mesh: bpy.types.Mesh, given: Elements, result: orbflow_native.Remeshed
     return of_vertices
 
 
-def _corners(mesh: bpy.types.Mesh, name: str) -> Int:
-    values = np.empty(len(mesh.loops), np.int32)
-    if len(values):
-        mesh.attributes[name].data.foreach_get("value", values)
-    return values
-
-
 def _cuts(mesh: bpy.types.Mesh, corner_vert: Int, maps: list[NDArray[np.float32]]) -> Int:
     """The edges at which a place has other texture coordinates on one side than on the other."""
     if not maps or not len(corner_vert):
         return np.empty((0, 2), np.int32)
-    ends, sides = ends_of(mesh), _corners(mesh, ".corner_edge")
+    ends, sides = attributes.edge_verts(mesh), attributes.corner_edges(mesh)
     loops = np.arange(len(sides), dtype=np.int32)
-    starts = np.empty(len(mesh.polygons), np.int32)
-    mesh.polygons.foreach_get("loop_start", starts)
+    starts = attributes.loop_starts(mesh)
     # The last corner of a face is followed by its first.
     ahead = loops + 1
     ahead[np.append(starts[1:], len(sides)) - 1] = starts

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The numbers of a mesh's own attributes, copied as arrays."""
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+
+def positions(mesh: bpy.types.Mesh) -> NDArray[np.float32]:
+    """The position of every vertex, (V, 3)."""
+    return _read(mesh, "position", "vector", (len(mesh.vertices), 3), np.float32)
+
+
+def edge_verts(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
+    """The vertices of every edge, (E, 2)."""
+    return _read(mesh, ".edge_verts", "value", (len(mesh.edges), 2), np.int32)
+
+
+def corner_verts(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
+    """The vertex of every corner, (L,)."""
+    return _read(mesh, ".corner_vert", "value", (len(mesh.loops),), np.int32)
+
+
+def corner_edges(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
+    """The edge from every corner to the next one of its face, (L,)."""
+    return _read(mesh, ".corner_edge", "value", (len(mesh.loops),), np.int32)
+
+
+def loop_starts(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
+    """The first corner of every face, (F,)."""
+    starts = np.empty(len(mesh.polygons), np.int32)
+    mesh.polygons.foreach_get("loop_start", starts)
+    return starts
+
+
+def _read(
+    mesh: bpy.types.Mesh, name: str, field: str, shape: tuple[int, ...], kind: type
+) -> NDArray:
+    values = np.empty(shape, kind)
+    # A mesh without elements may not have the attribute.
+    if values.size:
+        mesh.attributes[name].data.foreach_get(field, values.ravel())
+    return values
