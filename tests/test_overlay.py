@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 import orbflow_native
 import pytest
+from mathutils import Matrix
 from shapes import ball
 from test_operator import Open, addon, press
 
@@ -96,6 +97,37 @@ def test_no_field_is_shown_of_a_mesh_that_has_changed_or_does_not_flow(open_fixt
     assert len(addon("panel").last_crosses(first)) > 100
     first.data = bpy.data.meshes.new("Other")
     assert addon("overlay").figures(first, "crosses") == []
+
+
+def test_what_is_kept_of_a_run_belongs_to_the_mesh_it_made(open_fixture: Open) -> None:
+    first = open_fixture("03")
+    panel, made = addon("panel"), []
+    for _ in range(2):
+        press.orbflow_remesh(faces=200, primitive="QUAD_SPHERE")
+        made.append(first.data.copy())
+    # One count of faces, as after undo of the second run: the score is that of the mesh.
+    assert len(made[0].polygons) == len(made[1].polygons)
+    for mesh, n_faces in zip(made, (1280, len(made[0].polygons)), strict=True):
+        first.data = mesh
+        assert panel.last_report(first.name)["input"]["n_faces"] == n_faces
+    press.orbflow_remesh(faces=200)
+    first.name = "Renamed"
+    assert len(panel.last_crosses(first)) > 100
+    # Applying a scale moves the surface away from the crosses.
+    first.data.transform(Matrix.Scale(2, 4))
+    assert panel.last_crosses(first) is None
+
+
+def test_only_the_newest_runs_are_kept(open_fixture: Open) -> None:
+    first = open_fixture("03")
+    panel = addon("panel")
+    press.orbflow_remesh(faces=200)
+    report = panel.last_report("First")
+    for i in range(2 * panel._N_KEPT):
+        first.data.vertices[0].co.x = i
+        panel.remember(first, report, np.empty((0, 3, 3), np.float32))
+    assert len(panel._last) == panel._N_KEPT
+    assert len(panel.last_crosses(first)) == 0
 
 
 def test_crosses_are_told_only_when_asked_for() -> None:
