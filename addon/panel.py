@@ -31,8 +31,8 @@ _N_KEPT = 32
 _N_LOOKED_AT = 1000
 # How many letters of a sentence fit beside the icon in a panel of the usual width.
 _LINE = 36
-
-
+# What stands in an empty field.
+_PLACEHOLDERS = {"density": "Group or Color"}
 _ROWS = (
     ("Faces", "n_faces", "{:,}"),
     ("Quads", "quads_pct", "{:.0f} %"),
@@ -58,8 +58,9 @@ class VIEW3D_PT_orbflow(bpy.types.Panel):
         """Draws the panel."""
         layout = self.layout
         layout.use_property_split = True
+        layout.use_property_decorate = False
         for name in settings.NAMES:
-            layout.prop(context.scene.orbflow, name)
+            layout.prop(context.scene.orbflow, name, placeholder=_PLACEHOLDERS.get(name, ""))
         _button(layout, context)
         column = layout.column(heading="Show")
         column.prop(context.scene.orbflow, "show_irregular")
