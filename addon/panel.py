@@ -28,7 +28,7 @@ _last: dict[_Print, _Last] = {}
 # As many runs are kept as Blender keeps undo steps by default; a run is a tenth of a megabyte.
 _N_KEPT = 32
 # At most so many vertices are looked at on every redraw, which takes less than a millisecond.
-_N_LOOKED_AT = 1000
+_N_LOOKED_AT = 200
 # How many letters of a sentence fit beside the icon in a panel of the usual width.
 _LINE = 36
 # What stands in an empty field.
@@ -64,8 +64,10 @@ class VIEW3D_PT_orbflow(bpy.types.Panel):
         _button(layout, context)
         column = layout.column(heading="Show")
         column.prop(context.scene.orbflow, "show_irregular")
-        column.prop(context.scene.orbflow, "show_crosses")
         last = _last_of(context.object)
+        crosses = column.row()
+        crosses.active = last is not None and len(last.crosses) > 0
+        crosses.prop(context.scene.orbflow, "show_crosses")
         if last:
             _draw_score(layout.box().column(align=True), last.report)
 

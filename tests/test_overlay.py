@@ -85,8 +85,23 @@ def test_the_field_is_kept_for_the_session_and_lies_on_the_mesh(open_fixture: Op
     ]
     assert np.median(2 * lengths(crosses)) == pytest.approx(np.median(edges), rel=0.25)
     (figure,) = addon("overlay").figures(spot, "crosses")
-    assert figure.positions.shape == (4 * len(crosses), 3)
-    assert figure.positions[1] - figure.positions[0] == pytest.approx(2 * first[0], abs=1e-6)
+    n_shown = len(figure.positions) / 4
+    assert len(spot.data.polygons) / 2 < n_shown <= len(spot.data.polygons)
+    arm = figure.positions[1] - figure.positions[0]
+    assert np.cross(arm, first[0]) == pytest.approx(0, abs=1e-6)
+    assert 0.6 <= np.linalg.norm(arm) / np.linalg.norm(2 * first[0]) < 0.9
+
+
+@pytest.mark.usefixtures("_extension")
+@pytest.mark.parametrize(("n_faces", "n_shown", "arm"), [(1000, 1000, 0.6), (16_000, 4000, 1.2)])
+def test_crosses_fill_the_surface_and_do_not_meet(n_faces: int, n_shown: int, arm: float) -> None:
+    crosses = np.tile(np.eye(3, dtype=np.float32), (4000, 1, 1))
+    lines = addon("overlay").cross_lines(crosses, n_faces)
+    assert lines.dtype == np.float32
+    assert len(lines) == 4 * n_shown
+    assert lines[:4] == pytest.approx(
+        np.array([(1, -arm, 0), (1, arm, 0), (1, 0, -arm), (1, 0, arm)])
+    )
 
 
 def test_no_field_is_shown_of_a_mesh_that_has_changed_or_does_not_flow(open_fixture: Open) -> None:
