@@ -146,10 +146,11 @@ def cross_lines(crosses: NDArray[np.float32], n_faces: int) -> NDArray[np.float3
     Of more crosses than faces some are left out; fewer are drawn larger.
     """
     shown = crosses[:: max(1, -(-len(crosses) // max(1, n_faces)))]
-    arm = np.float32(_ARM * math.sqrt(n_faces / max(1, len(shown))))
-    place, first, second = shown[:, 0], shown[:, 1] * arm, shown[:, 2] * arm
+    arm = _ARM * math.sqrt(n_faces / max(1, len(shown)))
+    shown = shown * np.array((1, arm, arm), np.float32)[:, None]
+    place, first, second = (shown[:, i] for i in range(3))
     ends = (place - first, place + first, place - second, place + second)
-    return np.stack(ends, axis=1).reshape(-1, 3)
+    return np.stack(ends, axis=1, dtype=np.float32).reshape(-1, 3)
 
 
 def _draw() -> None:

@@ -29,8 +29,11 @@ _last: dict[_Print, _Last] = {}
 _N_KEPT = 32
 # At most so many vertices are looked at on every redraw, which takes less than a millisecond.
 _N_LOOKED_AT = 200
-# How many letters of a sentence fit beside the icon in a panel of the usual width.
+# How many letters of a sentence fit beside the icon in a panel of the usual width, how much of a
+# panel's width there is for no letter, and how wide a letter is, both in pixels.
 _LINE = 36
+_MARGIN_PX = 70.0
+_LETTER_PX = 6.0
 # What stands in an empty field.
 _PLACEHOLDERS = {"density": "Group or Color"}
 _ROWS = (
@@ -41,8 +44,8 @@ _ROWS = (
     ("On closed loops", "loop_edges_pct", "{:.0f} %"),
     ("In spirals", "spiral_pct", "{:.0f} %"),
     ("Edge variation", "edge_cv", "{:.2f}"),
-    ("Mean distance", "chamfer_pct", "{:.3f} %"),
-    ("Largest distance", "hausdorff_pct", "{:.2f} %"),
+    ("Mean distance", "chamfer_pct", "{:.3f} % of size"),
+    ("Largest distance", "hausdorff_pct", "{:.2f} % of size"),
 )
 
 
@@ -69,7 +72,7 @@ class VIEW3D_PT_orbflow(bpy.types.Panel):
         crosses.active = last is not None and len(last.crosses) > 0
         crosses.prop(context.scene.orbflow, "show_crosses")
         if last:
-            _draw_score(layout.box().column(align=True), last.report)
+            _draw_score(layout.box().column(align=True), last.report, _n_letters(context))
 
 
 def draw_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
@@ -180,10 +183,16 @@ def rows(report: dict[str, Any]) -> list[tuple[str, str]]:
     ]
 
 
-def _draw_score(column: bpy.types.UILayout, report: dict[str, Any]) -> None:
+def _n_letters(context: bpy.types.Context) -> int:
+    """How many letters fit beside the icon in the panel as wide as it is."""
+    scale = context.preferences.system.ui_scale
+    return max(10, int((context.region.width / scale - _MARGIN_PX) / _LETTER_PX))
+
+
+def _draw_score(column: bpy.types.UILayout, report: dict[str, Any], n_letters: int = _LINE) -> None:
     for text in exceptions([report]):
-        for i, line in enumerate(textwrap.wrap(text, _LINE)):
-            column.label(text=line, icon="NONE" if i else "INFO")
+        for i, line in enumerate(textwrap.wrap(text, n_letters)):
+            column.label(text=line, icon="BLANK1" if i else "INFO")
     for words, value in rows(report):
         row = column.row()
         row.label(text=words)

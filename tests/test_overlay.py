@@ -1,6 +1,8 @@
 """The marks on irregular vertices; drawing itself needs a window."""
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import bpy
 import numpy as np
@@ -187,3 +189,72 @@ def test_what_is_drawn_is_kept_until_the_mesh_changes(open_fixture: Open) -> Non
     press.orbflow_remesh(faces=200)
     get()
     assert len(made) == 3
+
+
+class Layout:
+    """A part of a panel that keeps what is drawn in it."""
+
+    def __init__(self, drawn: list[tuple[str, "Layout"]]) -> None:
+        self.drawn = drawn
+        self.active = True
+
+    def part(self, **_how: object) -> "Layout":
+        return Layout(self.drawn)
+
+    column = row = box = part
+
+    def prop(self, _of: object, name: str, **_how: object) -> None:
+        self.drawn.append((name, self))
+
+    def label(self, text: str, icon: str = "NONE") -> None:
+        self.drawn.append((f"{icon} {text}", self))
+
+    def operator(self, name: str, icon: str) -> SimpleNamespace:
+        self.drawn.append((f"{icon} {name}", self))
+        return SimpleNamespace()
+
+
+def drawn(thing: bpy.types.Object, width: int = 292) -> list[tuple[str, Layout]]:
+    """What the panel draws of an object in a sidebar of a width."""
+    preferences = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))
+    context: Any = SimpleNamespace(
+        scene=bpy.context.scene,
+        object=thing,
+        region=SimpleNamespace(width=width),
+        preferences=preferences,
+    )
+    layout = Layout([])
+    panel: Any = SimpleNamespace(layout=layout)
+    addon("panel").VIEW3D_PT_orbflow.draw(panel, context)
+    return layout.drawn
+
+
+def test_the_box_for_crosses_is_grey_while_there_is_no_field(open_fixture: Open) -> None:
+    first = open_fixture("03")
+    assert not dict(drawn(first))["show_crosses"].active
+    press.orbflow_remesh(faces=200, kind="TRIANGLES")
+    assert not dict(drawn(first))["show_crosses"].active
+    press.orbflow_remesh(faces=200)
+    assert dict(drawn(first))["show_crosses"].active
+    assert dict(drawn(first))["show_irregular"].active
+
+
+def test_sentences_are_broken_at_the_width_of_the_sidebar(open_fixture: Open) -> None:
+    first = open_fixture("03")
+    for name in ("Turn", "Spin"):
+        first.data.attributes.new(name, "QUATERNION", "POINT")
+    press.orbflow_remesh(faces=200)
+
+    def lines(width: int) -> list[str]:
+        icons = ("INFO ", "BLANK1 ")
+        return [text for text, _ in drawn(first, width) if text.startswith(icons)]
+
+    whole = "not carried over: attribute Spin, attribute Turn"
+    assert lines(600) == [f"INFO {whole}"]
+    for width in (200, 292):
+        first_line, *others = lines(width)
+        assert first_line.startswith("INFO ")
+        assert others
+        assert all(each.startswith("BLANK1 ") for each in others)
+        assert " ".join(each.split(" ", 1)[1] for each in lines(width)) == whole
+        assert max(len(each.split(" ", 1)[1]) for each in lines(width)) < width / 6
