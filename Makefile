@@ -8,7 +8,7 @@ WHEEL_FLAGS ?= $(if $(filter Linux,$(shell uname)),--zig --compatibility manylin
 # The meshes that benchmarks, training and evaluation read, and the run whose weights are measured.
 DATA ?= ../shared/data
 RUN = native/training/runs/2026-11-24
-SOURCES := $(shell find Cargo.toml Cargo.lock native/*/Cargo.toml native/*/src native/python -type f 2>/dev/null)
+SOURCES := $(shell find Cargo.toml Cargo.lock native/*/Cargo.toml native/*/src native/network/weights.orbflow native/python -type f 2>/dev/null)
 ADDON := $(shell find addon -type f ! -name "*.pyc")
 
 .SECONDARY: # keep the stamps
@@ -50,7 +50,7 @@ weights: sets ## Repeats the run whose weights are committed, in dist/run
 
 evaluation: sets $(VENV)/venv.stamp ## Measures the figures of docs/evaluation.md anew
 	target/release/orbflow evaluate dist/train.set --other dist/dev.set --baseline thesis --most 40 --finish \
-		--weights $(RUN)/weights.orbflow --report dist/evaluation.json
+		--weights native/network/weights.orbflow --report dist/evaluation.json
 	$(BIN)/python scripts/evaluation.py dist/evaluation.json docs/evaluation.md
 
 # A set that is whole stays as it is, one that was cut is gone on with: `make clean` before shapes change.

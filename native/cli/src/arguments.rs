@@ -72,9 +72,9 @@ pub struct Predict {
     pub files: Rebuilt,
     #[command(flatten)]
     pub wanted: Wanted,
-    /// The weights of the network, as `orbflow train` writes them
+    /// The weights of the network, as `orbflow train` writes them [default: the program's own]
     #[arg(long, value_name = "FILE")]
-    pub weights: PathBuf,
+    pub weights: Option<PathBuf>,
     #[command(flatten)]
     pub work: Work,
 }
@@ -202,8 +202,8 @@ pub struct Run {
     /// What proposes the map to the sphere
     #[arg(long, value_enum, default_value_t = Predictor::Solver)]
     pub predictor: Predictor,
-    /// The weights of the network, as `orbflow train` writes them
-    #[arg(long, value_name = "FILE", required_if_eq("predictor", "network"))]
+    /// The weights of the network, as `orbflow train` writes them [default: the program's own]
+    #[arg(long, value_name = "FILE")]
     pub weights: Option<PathBuf>,
     #[command(flatten)]
     pub work: Work,
@@ -286,9 +286,13 @@ impl Arguments {
             }
             Command::Predict(a) => {
                 check_primitive(&a.wanted)?;
+                check_weights(&a.run)?;
                 a.files.outputs()
             }
-            Command::Embed(a) => ([a.sphere.as_ref(), None], Some(&a.report), a.output_format),
+            Command::Embed(a) => {
+                check_weights(&a.run)?;
+                ([a.sphere.as_ref(), None], Some(&a.report), a.output_format)
+            }
             Command::Decimate(a) => {
                 let meshes = [Some(&a.files.output), None];
                 (meshes, None, a.files.output_format)
@@ -329,6 +333,15 @@ fn check_primitive(wanted: &Wanted) -> Result<(), clap::Error> {
             primitive.kind().name(),
             wanted.kind().name()
         ))),
+        _ => Ok(()),
+    }
+}
+
+fn check_weights(run: &Run) -> Result<(), clap::Error> {
+    match (run.predictor, &run.weights) {
+        (Predictor::Solver, Some(_)) => {
+            Err(wrong("--weights is for --predictor network alone".into()))
+        }
         _ => Ok(()),
     }
 }

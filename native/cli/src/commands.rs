@@ -54,7 +54,7 @@ fn predict(arguments: &Predict, interrupt: &Interrupt) -> Result<(), Error> {
         work,
     } = arguments;
     let mut job = Rebuilding::begin((files, wanted), interrupt)?;
-    let predictor = network(weights)?;
+    let predictor = network(weights.as_deref())?;
     let settings = wanted.settings(*work, files);
     let remeshed = job.remesh(&settings, &predictor)?;
     match beyond_repair(&files.files.input.input, &remeshed.report) {
