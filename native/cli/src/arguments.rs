@@ -51,6 +51,9 @@ pub enum Command {
     /// Train weights of the graph network, or go on where training was cut
     #[cfg(feature = "train")]
     Train(crate::train::Train),
+    /// Draw the log of a run, as training did it, anew
+    #[cfg(feature = "train")]
+    Curve(crate::train::Curve),
     /// Measure what trained weights reach on shapes, seen in training and never seen
     #[cfg(feature = "train")]
     Evaluate(crate::evaluate::Evaluate),
@@ -282,11 +285,11 @@ impl Arguments {
         let (meshes, reports, wanted) = match &self.command {
             Command::Remesh(a) => {
                 check_primitive(&a.wanted)?;
+                check_weights(&a.run)?;
                 a.files.outputs()
             }
             Command::Predict(a) => {
                 check_primitive(&a.wanted)?;
-                check_weights(&a.run)?;
                 a.files.outputs()
             }
             Command::Embed(a) => {
@@ -309,7 +312,7 @@ impl Arguments {
             #[cfg(feature = "train")]
             Command::Prepare(a) => ([None, None], a.manifest.as_ref(), None),
             #[cfg(feature = "train")]
-            Command::Train(_) => ([None, None], None, None),
+            Command::Train(_) | Command::Curve(_) => ([None, None], None, None),
             #[cfg(feature = "train")]
             Command::Evaluate(a) => ([None, None], Some(&a.report), None),
         };

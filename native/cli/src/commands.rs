@@ -32,6 +32,8 @@ pub fn run(command: &Command) -> Result<(), Error> {
         #[cfg(feature = "train")]
         Command::Train(arguments) => Ok(crate::train::train(arguments, &interrupt)?),
         #[cfg(feature = "train")]
+        Command::Curve(arguments) => Ok(crate::train::curve(arguments)?),
+        #[cfg(feature = "train")]
         Command::Evaluate(arguments) => crate::evaluate::evaluate(arguments, &interrupt),
     }
 }

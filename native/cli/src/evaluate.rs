@@ -1,9 +1,11 @@
 //! `orbflow evaluate`: what trained weights reach, on shapes trained on and on shapes never seen.
 
-use std::path::PathBuf;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use orbflow_geometry::progress::Progress;
+use orbflow_geometry::mesh::io::Format;
+use orbflow_geometry::progress::{CancelToken, Progress};
 use orbflow_network::weights::Weights;
 use orbflow_training::evaluate::outcome::Subject;
 use orbflow_training::evaluate::report::{Asked, Side, report, thinned};
@@ -50,6 +52,10 @@ pub struct Evaluate {
     /// and processor time; not of shapes trained on
     #[arg(long)]
     pub finish: bool,
+    /// Write the meshes of the measured shapes that were not trained on: the level, what the proposal
+    /// rebuilds of it, and the mesh that is finished, named after the shape
+    #[arg(long, value_name = "FOLDER")]
+    pub meshes: Option<PathBuf>,
 }
 
 /// The sides of a set.
@@ -108,6 +114,9 @@ pub fn evaluate(arguments: &Evaluate, interrupt: &Interrupt) -> Result<(), Error
             }
             None => (subject, 0.0),
         };
+        if let Some(folder) = &arguments.meshes {
+            write_meshes(folder, &subject, &shapes, token)?;
+        }
         let subject = (&weights.header, &subject);
         let stage = progress.part("measure", from, 1.0);
         Ok::<_, Error>(report(subject, &shapes, arguments.finish, &stage)?)
@@ -132,6 +141,35 @@ fn with_thesis(
         return Err(Error::NoShapes);
     }
     Ok(subject.with_thesis((set, &seen), settings, progress)?)
+}
+
+/// Writes as OBJ what there is to see of the shapes that were not trained on.
+fn write_meshes(
+    folder: &Path,
+    subject: &Subject,
+    shapes: &[Asked<'_>],
+    token: &CancelToken,
+) -> Result<(), Error> {
+    let place = |path: &Path| Place::File(path.to_owned());
+    fs::create_dir_all(folder).map_err(|cause| Error::Write {
+        place: place(folder),
+        cause: cause.into(),
+    })?;
+    for asked in shapes.iter().filter(|asked| asked.side != Side::Train) {
+        let shape = asked.set.read(asked.which)?;
+        // A shape that cannot be measured is named in the report.
+        let Ok(exhibits) = subject.exhibits(asked.which, &shape) else {
+            continue;
+        };
+        for (what, mesh) in exhibits {
+            let path = folder.join(format!("{}.{what}.obj", asked.file_stem()));
+            let place = place(&path);
+            let mut outputs = Outputs::new([&place])?;
+            outputs.write_mesh(&place, &mesh.into(), Format::Obj)?;
+            outputs.publish(token)?;
+        }
+    }
+    Ok(())
 }
 
 impl Evaluate {
