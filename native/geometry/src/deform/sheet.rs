@@ -7,6 +7,7 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::elementary::sin_cos;
 use crate::mesh::{FaceId, FaceMap, PolygonMesh, VertexId, VertexMap};
 use crate::sphere_map::{SphereMap, SurfacePoint, is_unfolded, walk_along};
 
@@ -61,7 +62,7 @@ impl Point {
     pub fn ways(&self) -> [DVec3; 8] {
         let (x, y) = self.normal.any_orthonormal_pair();
         array::from_fn(|i| {
-            let (sin, cos) = (i as f64 * TAU / 8.0).sin_cos();
+            let (sin, cos) = sin_cos(i as f64 * TAU / 8.0);
             x * cos + y * sin
         })
     }
