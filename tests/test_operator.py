@@ -322,4 +322,4 @@ def test_a_fallback_is_named_in_the_panel_and_the_info_line(open_fixture: Open) 
             return self
 
     panel._draw_score(Column(), report)
-    assert shown[:2] == ["INFO quad sphere instead of flow: no", "NONE whole periods: none"]
+    assert shown[:2] == ["INFO quad sphere instead of flow: no", "BLANK1 whole periods: none"]

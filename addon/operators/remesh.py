@@ -156,7 +156,7 @@ def _replace(context: bpy.types.Context, outcome: Done) -> dict[str, Any]:
     if old.users == 0:
         bpy.data.meshes.remove(old)
         thing.data.name = name
-    panel.remember(thing.name, report, outcome.result.crosses)
+    panel.remember(thing, report, outcome.result.crosses)
     return report
 
 
