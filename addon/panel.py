@@ -139,7 +139,7 @@ def exceptions(reports: list[dict[str, Any]]) -> list[str]:
     """In words what is otherwise than was asked for."""
     lost = ", ".join(sorted({each for report in reports for each in report["lost"]}))
     told = [_without_flow(reports), _without_mirror(reports), _without_marks(reports)]
-    told.append(f"not carried over: {lost}" if lost else "")
+    told += [_without_network(reports), f"not carried over: {lost}" if lost else ""]
     return [each for each in told if each]
 
 
@@ -163,23 +163,57 @@ def _without_mirror(reports: list[dict[str, Any]]) -> str:
     return _refused(reports, "mirrored", "not symmetric")
 
 
+def _without_network(reports: list[dict[str, Any]]) -> str:
+    """Which parts got the solver's map because a proposal was of no use."""
+    parts = _parts(reports)
+    given_up = [part for part in parts if part["embedding"]["repair"]["fell_back_to_solver"]]
+    if not given_up:
+        return ""
+    of = _of_parts(given_up, parts)
+    return f"solver instead of network{of}: the proposal was beyond repair"
+
+
 def _refused(reports: list[dict[str, Any]], what: str, words: str) -> str:
     """In how many parts something was refused, and why in the first; empty where in none."""
-    parts = [part for report in reports for part in report["parts"]]
+    parts = _parts(reports)
     refused = [part for part in parts if (part[what] or {}).get("status") == "refused"]
     if not refused:
         return ""
-    of = f" in {len(refused)} of {len(parts)} parts" if len(parts) > 1 else ""
-    return f"{words}{of}: {refused[0][what]['reason']}"
+    return f"{words}{_of_parts(refused, parts)}: {refused[0][what]['reason']}"
+
+
+def _parts(reports: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    return [part for report in reports for part in report["parts"]]
+
+
+def _of_parts(some: list[dict[str, Any]], parts: list[dict[str, Any]]) -> str:
+    return f" in {len(some)} of {len(parts)} parts" if len(parts) > 1 else ""
 
 
 def rows(report: dict[str, Any]) -> list[tuple[str, str]]:
     """The score as words and values; what does not apply is left out."""
     figures = report["output"] | (report["score"] or {})
-    return [
+    score = [
         (words, form.format(figures[name]))
         for words, name, form in _ROWS
         if figures.get(name) is not None
+    ]
+    return score + _proposal(report["embedding"])
+
+
+def _proposal(embedding: dict[str, Any]) -> list[tuple[str, str]]:
+    """What the network proposed and what it took to mend it; nothing with the solver."""
+    if embedding["predictor"] == "solver":
+        return []
+    proposal = embedding["proposal"]
+    relaxed = embedding["n_relaxations"] - proposal["n_relaxations"]
+    moved, n_vertices = embedding["repair"]["n_moved"], proposal["n_vertices"]
+    return [
+        ("Proposed by", embedding["predictor"]),
+        ("Folds proposed", f"{proposal['folds_pct']:.1f} %"),
+        ("Distortion", f"{proposal['energy']:.2f} → {embedding['energy']:.2f}"),
+        ("Vertices repaired", f"{moved:,} of {n_vertices:,}"),
+        ("Relaxations", f"{relaxed:,}"),
     ]
 
 

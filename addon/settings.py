@@ -43,7 +43,7 @@ _PREDICTORS = (
     (
         "NETWORK",
         "Network",
-        "A graph network with the weights that the preferences of the add-on name",
+        "A graph network proposes, the solver mends and grows; no faster or better than Solver",
     ),
 )
 

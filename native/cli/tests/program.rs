@@ -213,7 +213,11 @@ fn wrong_usage_ends_with_2_and_writes_nothing() {
         (owned(&["score", "-", "-"]), "read twice"),
         (owned(&["decimate", &input, &obj]), "--faces"),
         (owned(&["embed", &input]), "--report"),
-        (owned(&["predict", &input, &obj]), "--weights"),
+        (remesh(&["--weights", "w"]), "for --predictor network"),
+        (
+            owned(&["embed", &input, "--report", "-", "--weights", "w"]),
+            "for --predictor network",
+        ),
     ];
     for (arguments, words) in cases {
         let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
