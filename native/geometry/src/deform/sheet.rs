@@ -160,12 +160,17 @@ impl<'a> Sheet<'a> {
         self.kept.contains(&[a.min(b), a.max(b)])
     }
 
-    /// The edges that are saved from flips and have both ends where they were led, in order.
-    pub fn features(&self) -> Vec<[VertexId; 2]> {
-        let is_there = |[a, b]: &[VertexId; 2]| self.is_pinned(*a) && self.is_pinned(*b);
-        let mut edges: Vec<_> = self.kept.iter().copied().filter(is_there).collect();
+    /// The edges that are saved from flips, in order.
+    pub fn led(&self) -> Vec<[VertexId; 2]> {
+        let mut edges: Vec<_> = self.kept.iter().copied().collect();
         edges.sort_unstable();
         edges
+    }
+
+    /// Those that have both ends where they were led, in order.
+    pub fn features(&self) -> Vec<[VertexId; 2]> {
+        let is_there = |[a, b]: &[VertexId; 2]| self.is_pinned(*a) && self.is_pinned(*b);
+        self.led().into_iter().filter(is_there).collect()
     }
 
     /// The face on the left of the edge from `a` to `b`.
