@@ -5,12 +5,12 @@ VENV = .venv-$(PYTHON_VERSION)
 BIN = $(VENV)/bin
 # On Linux the wheel is linked against an old C library, so that it runs wherever Blender runs.
 WHEEL_FLAGS ?= $(if $(filter Linux,$(shell uname)),--zig --compatibility manylinux_2_28)
-# The meshes that benchmarks, training and evaluation read, and the run whose weights are measured.
+# The meshes that benchmarks, training and evaluation read, and the run whose weights ship.
 DATA ?= ../shared/data
 RUN = native/training/runs/2026-11-24
 # What training runs on besides flex, and is tested. Not cuda, whose build fetches a compiler, nor wgpu.
 ENGINES = orbflow-cli/ndarray
-SOURCES := $(shell find Cargo.toml Cargo.lock native/*/Cargo.toml native/*/src native/python -type f 2>/dev/null)
+SOURCES := $(shell find Cargo.toml Cargo.lock native/*/Cargo.toml native/*/src native/network/weights.orbflow native/python -type f 2>/dev/null)
 ADDON := $(shell find addon -type f ! -name "*.pyc")
 
 .SECONDARY: # keep the stamps
@@ -54,9 +54,12 @@ weights: sets ## Repeats the run whose weights are committed, in dist/run
 	target/release/orbflow train dist/train.set --config $(RUN)/config.toml -o dist/run
 
 evaluation: sets $(VENV)/venv.stamp ## Measures the figures of docs/evaluation.md anew
+	rm -rf dist/meshes
 	target/release/orbflow evaluate dist/train.set --other dist/dev.set --baseline thesis --most 40 --finish \
-		--weights $(RUN)/weights.orbflow --report dist/evaluation.json
+		--meshes dist/meshes --report dist/evaluation.json
 	$(BIN)/python scripts/evaluation.py dist/evaluation.json docs/evaluation.md
+	$(BIN)/python scripts/evaluation_grid.py dist/evaluation.json dist/meshes target/release/orbflow docs/pictures/evaluation.jpg
+	target/release/orbflow curve $(RUN)
 
 # A set that is whole stays as it is, one that was cut is gone on with: `make clean` before shapes change.
 sets:

@@ -7,6 +7,7 @@ one too many, black otherwise. Vertices on a border are left out: their valence 
 What is drawn is kept from one redraw to the next: to read a large mesh takes longer than a frame.
 """
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -27,12 +28,17 @@ _COLOURS: dict[str, Colour] = {
     "more": (1.00, 0.10, 0.10, 1.0),
     "other": (0.00, 0.00, 0.00, 1.0),
 }
-_CROSS_COLOUR: Colour = (0.95, 0.55, 0.10, 1.0)
+# Neither that of a mark nor the orange of what is selected.
+_CROSS_COLOUR: Colour = (0.05, 0.45, 0.15, 1.0)
+# Length of an arm as a share of the space a cross has to itself. At the whole space neighbouring
+# crosses run into one another, and nothing can be read.
+_ARM = 0.6
 _SIZE_PX = 9.0
 _WIDTH_PX = 1.5
-# Share of the way to the eye by which marks are drawn nearer. Below, the surface around a vertex
-# hides half of its mark; ten times as much shows marks through fingers.
-_NEARER = 0.004
+# What is drawn, in order, and the share of the way to the eye by which it is drawn nearer. Below
+# that of marks, the surface around a vertex hides half of its mark; ten times as much shows marks
+# through fingers. Crosses lie lower, so that none runs over a mark.
+_NEARER = {"crosses": 0.003, "irregular": 0.004}
 
 _handles: list[object] = []
 
@@ -126,16 +132,25 @@ def figures(thing: bpy.types.Object, what: str) -> list[Figure]:
     """What to draw of an object: its irregular vertices or the crosses of its field."""
     if what == "crosses":
         crosses = panel.last_crosses(thing)
-        return [] if crosses is None else [Figure("LINES", _CROSS_COLOUR, cross_lines(crosses))]
+        if crosses is None:
+            return []
+        lines = cross_lines(crosses, len(thing.data.polygons))
+        return [Figure("LINES", _CROSS_COLOUR, lines)]
     marks = irregular(thing.data)
     return [Figure("POINTS", colour, getattr(marks, name)) for name, colour in _COLOURS.items()]
 
 
-def cross_lines(crosses: NDArray[np.float32]) -> NDArray[np.float32]:
-    """The ends of the two lines of every cross, (4N, 3), of places and arms (N, 3, 3)."""
-    place, first, second = (crosses[:, i] for i in range(3))
+def cross_lines(crosses: NDArray[np.float32], n_faces: int) -> NDArray[np.float32]:
+    """The ends of the two lines of every cross, (4N, 3), of places and arms (N, 3, 3).
+
+    Of more crosses than faces some are left out; fewer are drawn larger.
+    """
+    shown = crosses[:: max(1, -(-len(crosses) // max(1, n_faces)))]
+    arm = _ARM * math.sqrt(n_faces / max(1, len(shown)))
+    shown = shown * np.array((1, arm, arm), np.float32)[:, None]
+    place, first, second = (shown[:, i] for i in range(3))
     ends = (place - first, place + first, place - second, place + second)
-    return np.stack(ends, axis=1).reshape(-1, 3)
+    return np.stack(ends, axis=1, dtype=np.float32).reshape(-1, 3)
 
 
 def _draw() -> None:
@@ -143,16 +158,17 @@ def _draw() -> None:
     thing = context.active_object
     if context.mode != "OBJECT" or thing is None or thing.type != "MESH":
         return
-    wanted = [what for what in ("irregular", "crosses") if _is_wanted(context, what)]
+    wanted = [what for what in _NEARER if _is_wanted(context, what)]
     if not wanted or not thing.visible_get():
         return
     gpu.state.depth_test_set("LESS_EQUAL")
     gpu.state.point_size_set(_SIZE_PX)
     gpu.state.line_width_set(_WIDTH_PX)
-    with gpu.matrix.push_pop():
-        view = gpu.matrix.get_model_view_matrix()
-        gpu.matrix.load_matrix(_towards_the_eye(context.region_data) @ view @ thing.matrix_world)
-        for what in wanted:
+    view = gpu.matrix.get_model_view_matrix()
+    for what in wanted:
+        nearer = _towards_the_eye(context.region_data, _NEARER[what])
+        with gpu.matrix.push_pop():
+            gpu.matrix.load_matrix(nearer @ view @ thing.matrix_world)
             draw(thing, what)
     gpu.state.point_size_set(1.0)
     gpu.state.line_width_set(1.0)
@@ -164,10 +180,10 @@ def _is_wanted(context: bpy.types.Context, what: str) -> bool:
     return shows and getattr(context.scene.orbflow, f"show_{what}")
 
 
-def _towards_the_eye(view: bpy.types.RegionView3D) -> Matrix:
+def _towards_the_eye(view: bpy.types.RegionView3D, share: float) -> Matrix:
     if view.is_perspective:
-        return Matrix.Scale(1 - _NEARER, 4)
-    return Matrix.Translation((0, 0, _NEARER * view.view_distance))
+        return Matrix.Scale(1 - share, 4)
+    return Matrix.Translation((0, 0, share * view.view_distance))
 
 
 def draw(thing: bpy.types.Object, what: str) -> None:

@@ -20,12 +20,22 @@ class _Last:
     crosses: NDArray[np.float32]
 
 
-# Of each object's last run, by the object's name.
-_last: dict[str, _Last] = {}
-# How many letters of a sentence fit beside the icon in a panel of the usual width.
+# What says which mesh a mesh is: how many vertices and faces it has, and where some vertices are.
+_Print = tuple[int, int, tuple[float, ...]]
+# Of the last runs, by the mesh that each has made: undo and redo, another name for an object and a
+# copy of it keep what belongs to them.
+_last: dict[_Print, _Last] = {}
+# As many runs are kept as Blender keeps undo steps by default; a run is a tenth of a megabyte.
+_N_KEPT = 32
+# At most so many vertices are looked at on every redraw, which takes less than a millisecond.
+_N_LOOKED_AT = 200
+# How many letters of a sentence fit beside the icon in a panel of the usual width, how much of a
+# panel's width there is for no letter, and how wide a letter is, both in pixels.
 _LINE = 36
-
-
+_MARGIN_PX = 70.0
+_LETTER_PX = 6.0
+# What stands in an empty field.
+_PLACEHOLDERS = {"density": "Group or Color"}
 _ROWS = (
     ("Faces", "n_faces", "{:,}"),
     ("Quads", "quads_pct", "{:.0f} %"),
@@ -34,8 +44,8 @@ _ROWS = (
     ("On closed loops", "loop_edges_pct", "{:.0f} %"),
     ("In spirals", "spiral_pct", "{:.0f} %"),
     ("Edge variation", "edge_cv", "{:.2f}"),
-    ("Mean distance", "chamfer_pct", "{:.3f} %"),
-    ("Largest distance", "hausdorff_pct", "{:.2f} %"),
+    ("Mean distance", "chamfer_pct", "{:.3f} % of size"),
+    ("Largest distance", "hausdorff_pct", "{:.2f} % of size"),
 )
 
 
@@ -51,15 +61,18 @@ class VIEW3D_PT_orbflow(bpy.types.Panel):
         """Draws the panel."""
         layout = self.layout
         layout.use_property_split = True
+        layout.use_property_decorate = False
         for name in settings.NAMES:
-            layout.prop(context.scene.orbflow, name)
+            layout.prop(context.scene.orbflow, name, placeholder=_PLACEHOLDERS.get(name, ""))
         _button(layout, context)
         column = layout.column(heading="Show")
         column.prop(context.scene.orbflow, "show_irregular")
-        column.prop(context.scene.orbflow, "show_crosses")
-        report = _report_of(context.object)
-        if report:
-            _draw_score(layout.box().column(align=True), report)
+        last = _last_of(context.object)
+        crosses = column.row()
+        crosses.active = last is not None and len(last.crosses) > 0
+        crosses.prop(context.scene.orbflow, "show_crosses")
+        if last:
+            _draw_score(layout.box().column(align=True), last.report, _n_letters(context))
 
 
 def draw_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
@@ -73,28 +86,38 @@ def _button(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     settings.copy(context.scene.orbflow, button)
 
 
-def remember(name: str, report: dict[str, Any], crosses: NDArray[np.float32]) -> None:
-    """Keeps what the panel and the overlay show of an object's last run."""
-    _last[name] = _Last(report, crosses)
+def remember(thing: bpy.types.Object, report: dict[str, Any], crosses: NDArray[np.float32]) -> None:
+    """Keeps what the panel and the overlay show of the run that made an object's mesh."""
+    key = _print_of(thing.data)
+    _last.pop(key, None)
+    _last[key] = _Last(report, crosses)
+    while len(_last) > _N_KEPT:
+        del _last[next(iter(_last))]
 
 
 def last_report(name: str) -> dict[str, Any] | None:
-    """The report of an object's last run in this session."""
-    return _last[name].report if name in _last else None
+    """The report of the run in this session that made an object what it is now."""
+    last = _last_of(bpy.data.objects.get(name))
+    return last and last.report
 
 
 def last_crosses(thing: bpy.types.Object) -> NDArray[np.float32] | None:
     """The crosses of the field of what an object is now, as places and arms (N, 3, 3)."""
-    return _last[thing.name].crosses if _report_of(thing) else None
+    last = _last_of(thing)
+    return last and last.crosses
 
 
-def _report_of(thing: bpy.types.Object | None) -> dict[str, Any] | None:
-    """The report of what an object is now: none after undo or an edit of its faces."""
+def _last_of(thing: bpy.types.Object | None) -> _Last | None:
+    """What is kept of what an object is now: none where its mesh was edited since."""
     if thing is None or thing.type != "MESH":
         return None
-    report = last_report(thing.name)
-    is_current = report and report["output"]["n_faces"] == len(thing.data.polygons)
-    return report if is_current else None
+    return _last.get(_print_of(thing.data))
+
+
+def _print_of(mesh: bpy.types.Mesh) -> _Print:
+    n = len(mesh.vertices)
+    looked_at = (mesh.vertices[i].co for i in range(0, n, n // _N_LOOKED_AT + 1))
+    return n, len(mesh.polygons), tuple(x for place in looked_at for x in place)
 
 
 def redraw(context: bpy.types.Context) -> None:
@@ -116,7 +139,7 @@ def exceptions(reports: list[dict[str, Any]]) -> list[str]:
     """In words what is otherwise than was asked for."""
     lost = ", ".join(sorted({each for report in reports for each in report["lost"]}))
     told = [_without_flow(reports), _without_mirror(reports), _without_marks(reports)]
-    told.append(f"not carried over: {lost}" if lost else "")
+    told += [_without_network(reports), f"not carried over: {lost}" if lost else ""]
     return [each for each in told if each]
 
 
@@ -140,30 +163,70 @@ def _without_mirror(reports: list[dict[str, Any]]) -> str:
     return _refused(reports, "mirrored", "not symmetric")
 
 
+def _without_network(reports: list[dict[str, Any]]) -> str:
+    """Which parts got the solver's map because a proposal was of no use."""
+    parts = _parts(reports)
+    given_up = [part for part in parts if part["embedding"]["repair"]["fell_back_to_solver"]]
+    if not given_up:
+        return ""
+    of = _of_parts(given_up, parts)
+    return f"solver instead of network{of}: the proposal was beyond repair"
+
+
 def _refused(reports: list[dict[str, Any]], what: str, words: str) -> str:
     """In how many parts something was refused, and why in the first; empty where in none."""
-    parts = [part for report in reports for part in report["parts"]]
+    parts = _parts(reports)
     refused = [part for part in parts if (part[what] or {}).get("status") == "refused"]
     if not refused:
         return ""
-    of = f" in {len(refused)} of {len(parts)} parts" if len(parts) > 1 else ""
-    return f"{words}{of}: {refused[0][what]['reason']}"
+    return f"{words}{_of_parts(refused, parts)}: {refused[0][what]['reason']}"
+
+
+def _parts(reports: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    return [part for report in reports for part in report["parts"]]
+
+
+def _of_parts(some: list[dict[str, Any]], parts: list[dict[str, Any]]) -> str:
+    return f" in {len(some)} of {len(parts)} parts" if len(parts) > 1 else ""
 
 
 def rows(report: dict[str, Any]) -> list[tuple[str, str]]:
     """The score as words and values; what does not apply is left out."""
     figures = report["output"] | (report["score"] or {})
-    return [
+    score = [
         (words, form.format(figures[name]))
         for words, name, form in _ROWS
         if figures.get(name) is not None
     ]
+    return score + _proposal(report["embedding"])
 
 
-def _draw_score(column: bpy.types.UILayout, report: dict[str, Any]) -> None:
+def _proposal(embedding: dict[str, Any]) -> list[tuple[str, str]]:
+    """What the network proposed and what it took to mend it; nothing with the solver."""
+    if embedding["predictor"] == "solver":
+        return []
+    proposal = embedding["proposal"]
+    relaxed = embedding["n_relaxations"] - proposal["n_relaxations"]
+    moved, n_vertices = embedding["repair"]["n_moved"], proposal["n_vertices"]
+    return [
+        ("Proposed by", embedding["predictor"]),
+        ("Folds proposed", f"{proposal['folds_pct']:.1f} %"),
+        ("Distortion", f"{proposal['energy']:.2f} → {embedding['energy']:.2f}"),
+        ("Vertices repaired", f"{moved:,} of {n_vertices:,}"),
+        ("Relaxations", f"{relaxed:,}"),
+    ]
+
+
+def _n_letters(context: bpy.types.Context) -> int:
+    """How many letters fit beside the icon in the panel as wide as it is."""
+    scale = context.preferences.system.ui_scale
+    return max(10, int((context.region.width / scale - _MARGIN_PX) / _LETTER_PX))
+
+
+def _draw_score(column: bpy.types.UILayout, report: dict[str, Any], n_letters: int = _LINE) -> None:
     for text in exceptions([report]):
-        for i, line in enumerate(textwrap.wrap(text, _LINE)):
-            column.label(text=line, icon="NONE" if i else "INFO")
+        for i, line in enumerate(textwrap.wrap(text, n_letters)):
+            column.label(text=line, icon="BLANK1" if i else "INFO")
     for words, value in rows(report):
         row = column.row()
         row.label(text=words)

@@ -1,13 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What holds for every file: where the weights of the network are."""
+"""What holds for every file: other weights of the network."""
 
 import bpy
 from bpy.props import StringProperty
-
-NO_WEIGHTS = (
-    "the network needs weights: name a file that `orbflow train` wrote in the preferences of the "
-    "add-on"
-)
 
 
 class OrbflowPreferences(bpy.types.AddonPreferences):
@@ -18,8 +13,8 @@ class OrbflowPreferences(bpy.types.AddonPreferences):
     weights: StringProperty(  # pyright: ignore[reportInvalidTypeForm]
         name="Network Weights",
         description=(
-            "The file of weights that the predictor Network uses, as `orbflow train` writes it. It "
-            "holds numbers; nothing in it is executed"
+            "A file of weights for the predictor Network, as `orbflow train` writes it; empty for "
+            "those that come with the add-on. It holds numbers; nothing in it is executed"
         ),
         subtype="FILE_PATH",
     )
@@ -30,6 +25,6 @@ class OrbflowPreferences(bpy.types.AddonPreferences):
 
 
 def weights() -> str | None:
-    """The path of the file of weights; none where none is chosen."""
+    """The path of the file of weights; none for those that come with the add-on."""
     path = bpy.context.preferences.addons[__package__].preferences.weights
     return bpy.path.abspath(path) if path else None

@@ -43,7 +43,7 @@ _PREDICTORS = (
     (
         "NETWORK",
         "Network",
-        "A graph network with the weights that the preferences of the add-on name",
+        "A graph network proposes, the solver mends and grows; no faster or better than Solver",
     ),
 )
 
@@ -56,6 +56,24 @@ def _share(name: str, description: str) -> Any:  # noqa: ANN401 - a property tha
 
 def _densities(_settings: object, context: bpy.types.Context, _typed: str) -> list[tuple[str, str]]:
     return density.names(context.object)
+
+
+def _density(**more: object) -> Any:  # noqa: ANN401
+    return StringProperty(
+        name="Density",
+        description=(
+            "Flowing quads: vertex group or color attribute that says where they are small: most "
+            "where it is 1 or white, largest where it is 0 or black; the count stays"
+        ),
+        search=_densities,
+        **more,
+    )
+
+
+def _push_undo(_settings: object, _context: bpy.types.Context) -> None:
+    """Makes an undo step, as Blender does for all fields but those that search."""
+    if not bpy.app.background and bpy.ops.ed.undo_push.poll():
+        bpy.ops.ed.undo_push(message="Density")
 
 
 class Settings:
@@ -82,14 +100,7 @@ class Settings:
     adaptivity: _share(
         "Adaptivity", "Flowing quads: 0 makes all of one size, 1 much smaller ones where it bends"
     )
-    density: StringProperty(
-        name="Density",
-        description=(
-            "Flowing quads: vertex group or color attribute that says where they are small, about "
-            "half as long where it is 1 or white as where it is 0 or black; the count stays"
-        ),
-        search=_densities,
-    )
+    density: _density()
     sharp_angle: FloatProperty(
         name="Sharp Angle",
         description=(
@@ -140,6 +151,8 @@ _OF_MESH = {"density", "marked_edges"}
 class OrbflowSettings(bpy.types.PropertyGroup, Settings):
     """The settings that the panel shows, saved with the scene."""
 
+    # Without a step of its own, undo of a run would empty it.
+    density: _density(update=_push_undo)
     show_irregular: BoolProperty(
         name="Irregular Vertices",
         description=(

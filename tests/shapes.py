@@ -1,5 +1,7 @@
 """Meshes made of numbers, chosen by property."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,6 +17,15 @@ def ball(rows: int = 40, columns: int = 60) -> Arrays:
     ring = np.stack([np.sin(lat) * np.cos(lon), np.sin(lat) * np.sin(lon), np.cos(lat)], -1)
     points = np.concatenate([(radius[..., None] * ring).reshape(-1, 3), [[0, 0, 1], [0, 0, -1]]])
     return points.astype(np.float32), *faces_of(_ball_triangles(rows, columns))
+
+
+def on_the_ring(mesh: Any) -> tuple[NDArray[np.bool_], float]:  # noqa: ANN401
+    """Which edges of a Blender mesh lie in the plane z = 0, and their length in all."""
+    points = np.array([vertex.co for vertex in mesh.vertices])
+    ends = points[np.array([edge.vertices for edge in mesh.edges])]
+    is_on = (np.abs(ends[..., 2]) < 1e-4).all(axis=1)
+    lengths = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+    return is_on, float(lengths[is_on].sum())
 
 
 def faces_of(triangles: NDArray[np.int32]) -> tuple[NDArray[np.int32], NDArray[np.int32]]:

@@ -3,6 +3,7 @@
 import inspect
 import math
 import re
+import sys
 import tomllib
 from typing import Any
 
@@ -85,6 +86,15 @@ def test_the_add_on_has_the_defaults_and_ranges_of_the_core(operator: Any) -> No
     assert operator["mirror"].default.lower() == given["mirror"]
     assert operator["predictor"].default.lower() == given["predictor"]
     assert (operator["primitive"].default, given["primitive"]) == ("AUTO", None)
+
+
+@pytest.mark.usefixtures("_extension")
+def test_the_weights_are_the_wheels_own_in_every_layer() -> None:
+    preferences = bpy.context.preferences.addons["bl_ext.user_default.orbflow"].preferences
+    assert preferences.bl_rna.properties["weights"].default == ""
+    assert sys.modules["bl_ext.user_default.orbflow.preferences"].weights() is None
+    for function in (_core.remesh, _core.embed):
+        assert defaults(function)["weights"] is None
 
 
 def test_the_add_on_offers_the_mirrors_of_the_core(operator: Any) -> None:  # noqa: ANN401

@@ -1,11 +1,14 @@
 """The marks on irregular vertices; drawing itself needs a window."""
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import bpy
 import numpy as np
 import orbflow_native
 import pytest
+from mathutils import Matrix
 from shapes import ball
 from test_operator import Open, addon, press
 
@@ -84,8 +87,23 @@ def test_the_field_is_kept_for_the_session_and_lies_on_the_mesh(open_fixture: Op
     ]
     assert np.median(2 * lengths(crosses)) == pytest.approx(np.median(edges), rel=0.25)
     (figure,) = addon("overlay").figures(spot, "crosses")
-    assert figure.positions.shape == (4 * len(crosses), 3)
-    assert figure.positions[1] - figure.positions[0] == pytest.approx(2 * first[0], abs=1e-6)
+    n_shown = len(figure.positions) / 4
+    assert len(spot.data.polygons) / 2 < n_shown <= len(spot.data.polygons)
+    arm = figure.positions[1] - figure.positions[0]
+    assert np.cross(arm, first[0]) == pytest.approx(0, abs=1e-6)
+    assert 0.6 <= np.linalg.norm(arm) / np.linalg.norm(2 * first[0]) < 0.9
+
+
+@pytest.mark.usefixtures("_extension")
+@pytest.mark.parametrize(("n_faces", "n_shown", "arm"), [(1000, 1000, 0.6), (16_000, 4000, 1.2)])
+def test_crosses_fill_the_surface_and_do_not_meet(n_faces: int, n_shown: int, arm: float) -> None:
+    crosses = np.tile(np.eye(3, dtype=np.float32), (4000, 1, 1))
+    lines = addon("overlay").cross_lines(crosses, n_faces)
+    assert lines.dtype == np.float32
+    assert len(lines) == 4 * n_shown
+    assert lines[:4] == pytest.approx(
+        np.array([(1, -arm, 0), (1, arm, 0), (1, 0, -arm), (1, 0, arm)])
+    )
 
 
 def test_no_field_is_shown_of_a_mesh_that_has_changed_or_does_not_flow(open_fixture: Open) -> None:
@@ -96,6 +114,37 @@ def test_no_field_is_shown_of_a_mesh_that_has_changed_or_does_not_flow(open_fixt
     assert len(addon("panel").last_crosses(first)) > 100
     first.data = bpy.data.meshes.new("Other")
     assert addon("overlay").figures(first, "crosses") == []
+
+
+def test_what_is_kept_of_a_run_belongs_to_the_mesh_it_made(open_fixture: Open) -> None:
+    first = open_fixture("03")
+    panel, made = addon("panel"), []
+    for _ in range(2):
+        press.orbflow_remesh(faces=200, primitive="QUAD_SPHERE")
+        made.append(first.data.copy())
+    # One count of faces, as after undo of the second run: the score is that of the mesh.
+    assert len(made[0].polygons) == len(made[1].polygons)
+    for mesh, n_faces in zip(made, (1280, len(made[0].polygons)), strict=True):
+        first.data = mesh
+        assert panel.last_report(first.name)["input"]["n_faces"] == n_faces
+    press.orbflow_remesh(faces=200)
+    first.name = "Renamed"
+    assert len(panel.last_crosses(first)) > 100
+    # Applying a scale moves the surface away from the crosses.
+    first.data.transform(Matrix.Scale(2, 4))
+    assert panel.last_crosses(first) is None
+
+
+def test_only_the_newest_runs_are_kept(open_fixture: Open) -> None:
+    first = open_fixture("03")
+    panel = addon("panel")
+    press.orbflow_remesh(faces=200)
+    report = panel.last_report("First")
+    for i in range(2 * panel._N_KEPT):
+        first.data.vertices[0].co.x = i
+        panel.remember(first, report, np.empty((0, 3, 3), np.float32))
+    assert len(panel._last) == panel._N_KEPT
+    assert len(panel.last_crosses(first)) == 0
 
 
 def test_crosses_are_told_only_when_asked_for() -> None:
@@ -140,3 +189,72 @@ def test_what_is_drawn_is_kept_until_the_mesh_changes(open_fixture: Open) -> Non
     press.orbflow_remesh(faces=200)
     get()
     assert len(made) == 3
+
+
+class Layout:
+    """A part of a panel that keeps what is drawn in it."""
+
+    def __init__(self, drawn: list[tuple[str, "Layout"]]) -> None:
+        self.drawn = drawn
+        self.active = True
+
+    def part(self, **_how: object) -> "Layout":
+        return Layout(self.drawn)
+
+    column = row = box = part
+
+    def prop(self, _of: object, name: str, **_how: object) -> None:
+        self.drawn.append((name, self))
+
+    def label(self, text: str, icon: str = "NONE") -> None:
+        self.drawn.append((f"{icon} {text}", self))
+
+    def operator(self, name: str, icon: str) -> SimpleNamespace:
+        self.drawn.append((f"{icon} {name}", self))
+        return SimpleNamespace()
+
+
+def drawn(thing: bpy.types.Object, width: int = 292) -> list[tuple[str, Layout]]:
+    """What the panel draws of an object in a sidebar of a width."""
+    preferences = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))
+    context: Any = SimpleNamespace(
+        scene=bpy.context.scene,
+        object=thing,
+        region=SimpleNamespace(width=width),
+        preferences=preferences,
+    )
+    layout = Layout([])
+    panel: Any = SimpleNamespace(layout=layout)
+    addon("panel").VIEW3D_PT_orbflow.draw(panel, context)
+    return layout.drawn
+
+
+def test_the_box_for_crosses_is_grey_while_there_is_no_field(open_fixture: Open) -> None:
+    first = open_fixture("03")
+    assert not dict(drawn(first))["show_crosses"].active
+    press.orbflow_remesh(faces=200, kind="TRIANGLES")
+    assert not dict(drawn(first))["show_crosses"].active
+    press.orbflow_remesh(faces=200)
+    assert dict(drawn(first))["show_crosses"].active
+    assert dict(drawn(first))["show_irregular"].active
+
+
+def test_sentences_are_broken_at_the_width_of_the_sidebar(open_fixture: Open) -> None:
+    first = open_fixture("03")
+    for name in ("Turn", "Spin"):
+        first.data.attributes.new(name, "QUATERNION", "POINT")
+    press.orbflow_remesh(faces=200)
+
+    def lines(width: int) -> list[str]:
+        icons = ("INFO ", "BLANK1 ")
+        return [text for text, _ in drawn(first, width) if text.startswith(icons)]
+
+    whole = "not carried over: attribute Spin, attribute Turn"
+    assert lines(600) == [f"INFO {whole}"]
+    for width in (200, 292):
+        first_line, *others = lines(width)
+        assert first_line.startswith("INFO ")
+        assert others
+        assert all(each.startswith("BLANK1 ") for each in others)
+        assert " ".join(each.split(" ", 1)[1] for each in lines(width)) == whole
+        assert max(len(each.split(" ", 1)[1]) for each in lines(width)) < width / 6

@@ -76,13 +76,44 @@ def test_wrong_and_damaged_weights_are_refused(weights: bytes, harm: object, tex
         orbflow_native.remesh(*ball(), predictor="network", weights=harm(weights))  # pyright: ignore
 
 
-def test_missing_weights_and_missing_files_are_said(tmp_path: Path) -> None:
-    with pytest.raises(orbflow_native.InputError, match="the network needs weights"):
-        orbflow_native.remesh(*ball(), predictor="network")
+def test_the_wheel_has_weights_of_its_own_and_tells_what_they_proposed() -> None:
+    embedding = orbflow_native.embed(*ball(), predictor="network").report["embedding"]
+    proposal, repair = embedding["proposal"], embedding["repair"]
+    assert (embedding["predictor"], repair["fell_back_to_solver"]) == ("network", False)
+    # The solver's map of this ball has 1.63.
+    assert proposal["energy"] == pytest.approx(1.64, abs=0.05)
+    assert (proposal["n_folds"], repair["n_moved"], proposal["n_relaxations"]) == (0, 0, 0)
+    assert embedding["n_relaxations"] > 0
+
+
+def test_weights_that_nothing_reads_and_missing_files_are_said(tmp_path: Path) -> None:
+    for function in (orbflow_native.remesh, orbflow_native.embed):
+        with pytest.raises(ValueError, match="for the predictor `network` alone"):
+            function(*ball(), weights=b"")
     with pytest.raises(orbflow_native.InputError, match=r"cannot read .*gone"):
         orbflow_native.remesh(*ball(), predictor="network", weights=tmp_path / "gone")
     with pytest.raises(TypeError):
         orbflow_native.remesh(*ball(), predictor="network", weights=7)  # pyright: ignore
+
+
+def test_the_add_on_needs_no_file_and_the_panel_tells_what_was_proposed(open_fixture: Open) -> None:
+    open_fixture("03")
+    assert press.orbflow_remesh(predictor="NETWORK", faces=200) == {"FINISHED"}
+    panel = addon("panel")
+    report = panel.last_report("First")
+    assert panel.exceptions([report]) == []
+    shown = dict(panel.rows(report))
+    proposal = report["embedding"]["proposal"]
+    assert shown["Proposed by"] == "network"
+    assert shown["Folds proposed"] == f"{proposal['folds_pct']:.1f} %"
+    assert shown["Vertices repaired"].endswith(f" of {proposal['n_vertices']:,}")
+    assert shown["Distortion"].startswith(f"{proposal['energy']:.2f} → ")
+    assert shown["Relaxations"] == f"{report['embedding']['n_relaxations']:,}"
+    report["parts"][0]["embedding"]["repair"]["fell_back_to_solver"] = True
+    told = "solver instead of network: the proposal was beyond repair"
+    assert panel.exceptions([report]) == [told]
+    assert press.orbflow_remesh(predictor="SOLVER", faces=200) == {"FINISHED"}
+    assert "Proposed by" not in dict(panel.rows(panel.last_report("First")))
 
 
 def test_the_file_in_the_preferences_is_used_and_wrong_ones_change_nothing(
@@ -92,8 +123,6 @@ def test_the_file_in_the_preferences_is_used_and_wrong_ones_change_nothing(
     preferences = bpy.context.preferences.addons["bl_ext.user_default.orbflow"].preferences
     path = tmp_path / "noise.weights"
     path.write_bytes(weights[:-2])
-    preferences.weights = ""
-    bpy.context.scene.orbflow.predictor = "NETWORK"
 
     def error() -> str:
         before = len(first.data.polygons), first.data
@@ -103,8 +132,6 @@ def test_the_file_in_the_preferences_is_used_and_wrong_ones_change_nothing(
         return str(caught.value)
 
     try:
-        assert "the network needs weights" in error()
-        assert "preferences" in error()
         preferences.weights = str(path)
         assert "bytes, but" in error()
         path.write_bytes(weights)

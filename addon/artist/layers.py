@@ -32,10 +32,13 @@ class Mix:
     weights: NDArray[np.float32]
 
     def of(self, values: NDArray) -> NDArray:
-        """Numbers are mixed; of anything else the largest share wins."""
+        """Numbers are mixed; of anything else the value with the largest share wins."""
+        three = values[self.rows]
         if values.dtype == np.float32:
-            return np.einsum("nkw,nk->nw", values[self.rows], self.weights)
-        return values[self.rows[np.arange(len(self.rows)), self.weights.argmax(axis=1)]]
+            return np.einsum("nkw,nk->nw", three, self.weights)
+        is_same = (three[:, :, None] == three[:, None]).all(axis=3)
+        shares = (is_same * self.weights[:, None]).sum(axis=2)
+        return three[np.arange(len(three)), shares.argmax(axis=1)]
 
 
 @dataclass(frozen=True)

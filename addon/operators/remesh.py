@@ -7,7 +7,7 @@ from typing import Any
 import bpy
 import orbflow_native
 
-from .. import artist, density, mesh_arrays, panel, preferences, settings
+from .. import artist, density, mesh_arrays, panel, settings
 from ..job import Done, Failed, Job, Outcome, Task, Todo, remesh
 
 _TICK_S = 0.05
@@ -136,8 +136,6 @@ def _task(thing: bpy.types.Object, wanted: settings.Settings) -> Todo:
     arrays = mesh_arrays.read(thing.data, wanted.marked_edges)
     scale = tuple(thing.matrix_world.to_scale())
     task = Task(thing.name, arrays, scale, artist.read(thing))
-    if wanted.predictor == "NETWORK" and not preferences.weights():
-        return Failed(task, preferences.NO_WEIGHTS)
     try:
         return replace(task, density=density.read(thing, wanted.density))
     except density.NoSuchName as error:
@@ -158,7 +156,7 @@ def _replace(context: bpy.types.Context, outcome: Done) -> dict[str, Any]:
     if old.users == 0:
         bpy.data.meshes.remove(old)
         thing.data.name = name
-    panel.remember(thing.name, report, outcome.result.crosses)
+    panel.remember(thing, report, outcome.result.crosses)
     return report
 
 

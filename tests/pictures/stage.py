@@ -34,15 +34,16 @@ class Exhibit:
     has_marks: bool = False
 
 
-def picture(rows: Sequence[Sequence[Exhibit]], out: Path) -> None:
-    """Renders rows of exhibits, each scaled into a cell of its own, to a PNG."""
+def picture(rows: Sequence[Sequence[Exhibit]], out: Path, cell_px: int | None = None) -> None:
+    """Renders rows of exhibits, each scaled into a cell of its own, to a PNG or a small JPEG."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     n_columns = max(map(len, rows))
     for i, row in enumerate(rows):
         for j, exhibit in enumerate(row):
             _place(exhibit, np.array([j - (n_columns - 1) / 2, 0.0, (len(rows) - 1) / 2 - i]))
     _camera(n_columns, len(rows))
-    _render(n_columns, len(rows), out)
+    cell = cell_px or (SMALL_CELL_PX if len(rows) > TALL else CELL_PX)
+    _render(n_columns * cell, len(rows) * cell, out)
 
 
 def _place(exhibit: Exhibit, centre: NDArray[np.float64]) -> None:
@@ -140,13 +141,14 @@ def _camera(n_columns: int, n_rows: int) -> None:
     bpy.context.scene.camera = camera
 
 
-def _render(n_columns: int, n_rows: int, out: Path) -> None:
+def _render(width: int, height: int, out: Path) -> None:
     scene = bpy.context.scene
     scene.render.engine = "BLENDER_WORKBENCH"
-    cell = SMALL_CELL_PX if n_rows > TALL else CELL_PX
-    scene.render.resolution_x, scene.render.resolution_y = n_columns * cell, n_rows * cell
+    scene.render.resolution_x, scene.render.resolution_y = width, height
     scene.render.film_transparent = False
     scene.render.filepath = str(out)
+    scene.render.image_settings.file_format = "JPEG" if out.suffix == ".jpg" else "PNG"
+    scene.render.image_settings.quality = 80
     scene.render.image_settings.color_mode = "RGB"
     scene.display.render_aa = "16"
     shading = scene.display.shading

@@ -51,6 +51,9 @@ pub enum Command {
     /// Train weights of the graph network, or go on where training was cut
     #[cfg(feature = "train")]
     Train(crate::train::Train),
+    /// Draw the log of a run, as training did it, anew
+    #[cfg(feature = "train")]
+    Curve(crate::train::Curve),
     /// Measure what trained weights reach on shapes, seen in training and never seen
     #[cfg(feature = "train")]
     Evaluate(crate::evaluate::Evaluate),
@@ -72,9 +75,9 @@ pub struct Predict {
     pub files: Rebuilt,
     #[command(flatten)]
     pub wanted: Wanted,
-    /// The weights of the network, as `orbflow train` writes them
+    /// The weights of the network, as `orbflow train` writes them [default: the program's own]
     #[arg(long, value_name = "FILE")]
-    pub weights: PathBuf,
+    pub weights: Option<PathBuf>,
     #[command(flatten)]
     pub work: Work,
 }
@@ -202,8 +205,8 @@ pub struct Run {
     /// What proposes the map to the sphere
     #[arg(long, value_enum, default_value_t = Predictor::Solver)]
     pub predictor: Predictor,
-    /// The weights of the network, as `orbflow train` writes them
-    #[arg(long, value_name = "FILE", required_if_eq("predictor", "network"))]
+    /// The weights of the network, as `orbflow train` writes them [default: the program's own]
+    #[arg(long, value_name = "FILE")]
     pub weights: Option<PathBuf>,
     #[command(flatten)]
     pub work: Work,
@@ -282,13 +285,17 @@ impl Arguments {
         let (meshes, reports, wanted) = match &self.command {
             Command::Remesh(a) => {
                 check_primitive(&a.wanted)?;
+                check_weights(&a.run)?;
                 a.files.outputs()
             }
             Command::Predict(a) => {
                 check_primitive(&a.wanted)?;
                 a.files.outputs()
             }
-            Command::Embed(a) => ([a.sphere.as_ref(), None], Some(&a.report), a.output_format),
+            Command::Embed(a) => {
+                check_weights(&a.run)?;
+                ([a.sphere.as_ref(), None], Some(&a.report), a.output_format)
+            }
             Command::Decimate(a) => {
                 let meshes = [Some(&a.files.output), None];
                 (meshes, None, a.files.output_format)
@@ -305,7 +312,7 @@ impl Arguments {
             #[cfg(feature = "train")]
             Command::Prepare(a) => ([None, None], a.manifest.as_ref(), None),
             #[cfg(feature = "train")]
-            Command::Train(_) => ([None, None], None, None),
+            Command::Train(_) | Command::Curve(_) => ([None, None], None, None),
             #[cfg(feature = "train")]
             Command::Evaluate(a) => ([None, None], Some(&a.report), None),
         };
@@ -329,6 +336,15 @@ fn check_primitive(wanted: &Wanted) -> Result<(), clap::Error> {
             primitive.kind().name(),
             wanted.kind().name()
         ))),
+        _ => Ok(()),
+    }
+}
+
+fn check_weights(run: &Run) -> Result<(), clap::Error> {
+    match (run.predictor, &run.weights) {
+        (Predictor::Solver, Some(_)) => {
+            Err(wrong("--weights is for --predictor network alone".into()))
+        }
         _ => Ok(()),
     }
 }

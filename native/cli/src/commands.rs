@@ -32,6 +32,8 @@ pub fn run(command: &Command) -> Result<(), Error> {
         #[cfg(feature = "train")]
         Command::Train(arguments) => Ok(crate::train::train(arguments, &interrupt)?),
         #[cfg(feature = "train")]
+        Command::Curve(arguments) => Ok(crate::train::curve(arguments)?),
+        #[cfg(feature = "train")]
         Command::Evaluate(arguments) => crate::evaluate::evaluate(arguments, &interrupt),
     }
 }
@@ -54,7 +56,7 @@ fn predict(arguments: &Predict, interrupt: &Interrupt) -> Result<(), Error> {
         work,
     } = arguments;
     let mut job = Rebuilding::begin((files, wanted), interrupt)?;
-    let predictor = network(weights)?;
+    let predictor = network(weights.as_deref())?;
     let settings = wanted.settings(*work, files);
     let remeshed = job.remesh(&settings, &predictor)?;
     match beyond_repair(&files.files.input.input, &remeshed.report) {

@@ -1,9 +1,12 @@
 //! `orbflow evaluate`: what trained weights reach, on shapes trained on and on shapes never seen.
 
-use std::path::PathBuf;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use orbflow_geometry::progress::Progress;
+use orbflow_geometry::mesh::io::Format;
+use orbflow_geometry::progress::{CancelToken, Progress};
+use orbflow_network::weights::Weights;
 use orbflow_training::evaluate::outcome::Subject;
 use orbflow_training::evaluate::report::{Asked, Side, report, thinned};
 use orbflow_training::load::{LoadError, check_levels};
@@ -26,21 +29,21 @@ pub struct Evaluate {
     /// Which of its shapes to measure: those trained on, those held back
     #[arg(long, value_enum, default_value_t = Which::All)]
     pub split: Which,
-    /// The weights, as `orbflow train` writes them
+    /// The weights, as `orbflow train` writes them [default: the program's own]
     #[arg(long, value_name = "FILE")]
-    pub weights: PathBuf,
+    pub weights: Option<PathBuf>,
     /// Write the figures as JSON: medians by side and category, and every shape
     #[arg(long, value_name = "R.json")]
     pub report: Place,
     /// Sets of which training was given nothing; once for each
     #[arg(long, value_name = "SET")]
     pub other: Vec<PathBuf>,
-    /// What to measure beside the network; radial projection and solver are measured always. The
-    /// thesis's network is trained first, on the measured shapes among those trained on
+    /// What to measure beside network, radial projection and solver, which are measured always: the
+    /// thesis's network is trained first, on the shapes trained on, at most N of them
     #[arg(long, value_enum, value_name = "NAME")]
-    pub baseline: Vec<Baseline>,
+    pub baseline: Option<Baseline>,
     /// The size of the thesis's network; what it leaves out has its default
-    #[arg(long, value_name = "T.toml")]
+    #[arg(long, value_name = "T.toml", requires = "baseline")]
     pub thesis: Option<PathBuf>,
     /// At most how many shapes of each side, evenly taken
     #[arg(long, value_name = "N", default_value_t = 200)]
@@ -49,6 +52,10 @@ pub struct Evaluate {
     /// and processor time; not of shapes trained on
     #[arg(long)]
     pub finish: bool,
+    /// Write the meshes of the measured shapes that were not trained on: the level, what the proposal
+    /// rebuilds of it, and the mesh that is finished, named after the shape
+    #[arg(long, value_name = "FOLDER")]
+    pub meshes: Option<PathBuf>,
 }
 
 /// The sides of a set.
@@ -62,13 +69,9 @@ pub enum Which {
     All,
 }
 
-/// What a network is compared with.
+/// What can be measured beside the network, at the cost of training it.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
 pub enum Baseline {
-    /// The directions from the centre
-    Radial,
-    /// Progressive embedding
-    Solver,
     /// The pipeline of the thesis, at a size that fits a processor
     Thesis,
 }
@@ -77,9 +80,12 @@ pub enum Baseline {
 pub fn evaluate(arguments: &Evaluate, interrupt: &Interrupt) -> Result<(), Error> {
     let token = interrupt.start_work();
     let mut outputs = Outputs::new([&arguments.report])?;
-    let weights = read_weights(&arguments.weights)?;
+    let weights = match &arguments.weights {
+        Some(path) => read_weights(path)?,
+        None => Weights::shipped(),
+    };
     let subject = Subject::new(&weights).map_err(|cause| Error::Weights {
-        path: arguments.weights.clone(),
+        path: arguments.weights.clone().unwrap_or_default(),
         cause,
     })?;
     let set = Set::open(&arguments.set)?;
@@ -101,13 +107,16 @@ pub fn evaluate(arguments: &Evaluate, interrupt: &Interrupt) -> Result<(), Error
         return Err(Error::NoShapes);
     }
     let report = with_bar(token, |progress| {
-        let has_thesis = arguments.baseline.contains(&Baseline::Thesis);
-        let (subject, from) = if has_thesis {
-            let stage = progress.part("", 0.0, 0.5);
-            (with_thesis(subject, (arguments, &set, &all), &stage)?, 0.5)
-        } else {
-            (subject, 0.0)
+        let (subject, from) = match arguments.baseline {
+            Some(Baseline::Thesis) => {
+                let stage = progress.part("", 0.0, 0.5);
+                (with_thesis(subject, (arguments, &set, &all), &stage)?, 0.5)
+            }
+            None => (subject, 0.0),
         };
+        if let Some(folder) = &arguments.meshes {
+            write_meshes(folder, &subject, &shapes, token)?;
+        }
         let subject = (&weights.header, &subject);
         let stage = progress.part("measure", from, 1.0);
         Ok::<_, Error>(report(subject, &shapes, arguments.finish, &stage)?)
@@ -132,6 +141,35 @@ fn with_thesis(
         return Err(Error::NoShapes);
     }
     Ok(subject.with_thesis((set, &seen), settings, progress)?)
+}
+
+/// Writes as OBJ what there is to see of the shapes that were not trained on.
+fn write_meshes(
+    folder: &Path,
+    subject: &Subject,
+    shapes: &[Asked<'_>],
+    token: &CancelToken,
+) -> Result<(), Error> {
+    let place = |path: &Path| Place::File(path.to_owned());
+    fs::create_dir_all(folder).map_err(|cause| Error::Write {
+        place: place(folder),
+        cause: cause.into(),
+    })?;
+    for asked in shapes.iter().filter(|asked| asked.side != Side::Train) {
+        let shape = asked.set.read(asked.which)?;
+        // A shape that cannot be measured is named in the report.
+        let Ok(exhibits) = subject.exhibits(asked.which, &shape) else {
+            continue;
+        };
+        for (what, mesh) in exhibits {
+            let path = folder.join(format!("{}.{what}.obj", asked.file_stem()));
+            let place = place(&path);
+            let mut outputs = Outputs::new([&place])?;
+            outputs.write_mesh(&place, &mesh.into(), Format::Obj)?;
+            outputs.publish(token)?;
+        }
+    }
+    Ok(())
 }
 
 impl Evaluate {

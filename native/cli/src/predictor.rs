@@ -14,15 +14,18 @@ impl Run {
     /// The predictor itself, with its weights.
     pub fn build(&self) -> Result<Box<dyn OffsetPredictor>, Error> {
         match (self.predictor, &self.weights) {
-            (Predictor::Network, Some(path)) => Ok(Box::new(network(path)?)),
-            // The arguments see to it that a network has weights.
-            _ => Ok(Box::new(Solver::default())),
+            (Predictor::Network, path) => Ok(Box::new(network(path.as_deref())?)),
+            // The arguments see to it that a solver has none.
+            (Predictor::Solver, _) => Ok(Box::new(Solver::default())),
         }
     }
 }
 
-/// A network with the weights of a file.
-pub fn network(path: &Path) -> Result<NetworkPredictor, Error> {
+/// A network with the weights of a file, or with those that the program carries.
+pub fn network(path: Option<&Path>) -> Result<NetworkPredictor, Error> {
+    let Some(path) = path else {
+        return Ok(NetworkPredictor::default());
+    };
     let wrong = |cause: ReadWeightsError| Error::Weights {
         path: path.to_owned(),
         cause,

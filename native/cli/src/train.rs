@@ -5,6 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use orbflow_training::curve::draw_log;
 use orbflow_training::engine::{Engine, EngineError, name_of};
 use orbflow_training::evaluate::{Baselines, baselines};
 use orbflow_training::load::{LoadError, load};
@@ -31,6 +32,13 @@ pub struct Train {
     /// What to train on
     #[arg(long, value_enum, default_value_t = Device::Cpu)]
     pub device: Device,
+}
+
+#[derive(Args, Debug)]
+pub struct Curve {
+    /// The folder of the run: log.jsonl is read, curve.svg written
+    #[arg(value_name = "RUN")]
+    pub run: PathBuf,
 }
 
 /// What training can run on, if the program was built for it.
@@ -118,6 +126,11 @@ pub fn train(arguments: &Train, interrupt: &Interrupt) -> Result<(), Error> {
         &run.join("weights.orbflow"),
         &trained.weights(&about).to_bytes(),
     )
+}
+
+/// Draws what a run has logged so far.
+pub fn curve(arguments: &Curve) -> Result<(), Error> {
+    Ok(draw_log(&arguments.run)?)
 }
 
 impl From<Device> for Engine {

@@ -3,26 +3,18 @@
 mod support;
 
 use std::fs;
-use std::path::Path;
 
 use orbflow_network::weights::Weights;
 use serde_json::Value;
 use support::{Folder, ball, run};
-
-/// The committed weights.
-fn weights() -> String {
-    let runs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../training/runs");
-    let path = runs.join("2026-11-24/weights.orbflow");
-    path.to_str().expect("the path is text").to_owned()
-}
 
 #[test]
 fn predict_makes_a_mesh_of_the_proposal_and_tells_what_it_cost() {
     let folder = Folder::new();
     let input = folder.write("ball.obj", &ball(""));
     let [output, report] = ["out.obj", "r.json"].map(|name| folder.path(name));
-    let files = ["predict", &input, &output, "--report", &report, "--weights"];
-    let done = run(&[&files[..], &[&weights(), "--faces", "200"]].concat());
+    let files = ["predict", &input, &output, "--report", &report];
+    let done = run(&[&files[..], &["--faces", "200"]].concat());
     assert_eq!((done.code, done.err.as_str()), (0, ""));
     let report: Value = serde_json::from_str(&fs::read_to_string(report).unwrap()).unwrap();
     let embedding = &report["embedding"];
@@ -35,12 +27,27 @@ fn predict_makes_a_mesh_of_the_proposal_and_tells_what_it_cost() {
     assert!(fs::exists(output).unwrap());
 }
 
+#[test]
+fn a_file_of_the_programs_own_weights_changes_no_byte() {
+    let folder = Folder::new();
+    let input = folder.write("ball.obj", &ball(""));
+    let weights = folder.path("own.orbflow");
+    fs::write(&weights, Weights::shipped().to_bytes()).unwrap();
+    for verb in [&["predict"][..], &["remesh", "--predictor", "network"]] {
+        let own = [verb, &[&input, "-", "--faces", "200"]].concat();
+        let [own, given] = [own.clone(), [&own[..], &["--weights", &weights]].concat()];
+        let [own, given] = [own, given].map(|arguments| run(&arguments));
+        assert_eq!((own.code, given.code), (0, 0), "{}", own.err);
+        assert!(own.out == given.out && !own.out.is_empty());
+    }
+}
+
 /// Weights that send every vertex to one place.
 #[test]
 fn predict_says_that_a_proposal_was_no_use_and_writes_the_report_alone() {
     let folder = Folder::new();
     let input = folder.write("ball.obj", &ball(""));
-    let mut weights = Weights::from_bytes(&fs::read(weights()).unwrap()).unwrap();
+    let mut weights = Weights::shipped();
     // The last three parameters are the bias of the head.
     let last = weights.parameters.len() - 3;
     weights.parameters[last..].copy_from_slice(&[6e4, 0.0, 0.0]);

@@ -4,6 +4,7 @@ mod support;
 
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
 use serde_json::Value;
 use support::{BALL_FACES, Folder, ball, run, run_with_input};
@@ -68,6 +69,27 @@ fn the_same_bytes_come_out_twice_and_with_any_number_of_threads() {
         done.out
     });
     assert!(results[0] == results[1] && results[1] == results[2]);
+}
+
+#[test]
+fn the_same_bytes_come_out_on_a_processor_that_can_do_less() {
+    let folder = Folder::new();
+    let input = folder.write("ball.obj", &ball(""));
+    // To the C library; it picks its functions by what the processor can do.
+    let results = [
+        "",
+        "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX2_Usable,-FMA_Usable",
+    ]
+    .map(|less| {
+        let done = Command::new(env!("CARGO_BIN_EXE_orbflow"))
+            .args(["remesh", &input, "-", "--faces", "300"])
+            .env("GLIBC_TUNABLES", less)
+            .output()
+            .unwrap();
+        assert!(done.status.success());
+        done.stdout
+    });
+    assert!(results[0] == results[1]);
 }
 
 #[test]
@@ -191,7 +213,11 @@ fn wrong_usage_ends_with_2_and_writes_nothing() {
         (owned(&["score", "-", "-"]), "read twice"),
         (owned(&["decimate", &input, &obj]), "--faces"),
         (owned(&["embed", &input]), "--report"),
-        (owned(&["predict", &input, &obj]), "--weights"),
+        (remesh(&["--weights", "w"]), "for --predictor network"),
+        (
+            owned(&["embed", &input, "--report", "-", "--weights", "w"]),
+            "for --predictor network",
+        ),
     ];
     for (arguments, words) in cases {
         let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();

@@ -92,6 +92,66 @@ fn a_run_leaves_weights_that_embed_and_evaluate_take() {
 }
 
 #[test]
+fn the_programs_own_weights_are_measured_and_what_they_were_given_is_there_to_see() {
+    let folder = Folder::new();
+    let set = prepared(&folder);
+    let [report, meshes] = ["evaluation.json", "meshes"].map(|name| folder.path(name));
+    let evaluate = ["evaluate", &set, "--report", &report, "--split", "test"];
+    let done = run(&[&evaluate[..], &["--meshes", &meshes]].concat());
+    assert_eq!(done.code, 0, "{}", done.err);
+    let network = &json(&report)["sides"]["test"]["overall"]["proposals"]["network"];
+    assert!(network["energy_ratio"].as_f64().unwrap() < 1.3, "{network}");
+    let names = fs::read_dir(&meshes).unwrap();
+    let mut names: Vec<String> = names
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort_unstable();
+    let kinds = [
+        "level",
+        "level_sphere",
+        "rebuilt",
+        "rebuilt_sphere",
+        "whole",
+    ];
+    assert_eq!(names.len(), kinds.len());
+    for ((name, kind), n_vertices) in names.iter().zip(kinds).zip([500, 500, 1962, 1962, 8002]) {
+        assert!(name.ends_with(&format!("part_0.{kind}.obj")), "{name}");
+        let text = fs::read_to_string(format!("{meshes}/{name}")).unwrap();
+        let n = text.lines().filter(|line| line.starts_with("v ")).count();
+        assert_eq!(n, n_vertices, "{name}");
+    }
+}
+
+#[test]
+fn baselines_are_those_that_have_to_be_asked_for() {
+    let folder = Folder::new();
+    let (set, report) = (folder.path("no.set"), folder.path("evaluation.json"));
+    let evaluate = ["evaluate", &set, "--report", &report];
+    for (more, words) in [
+        (&["--baseline", "solver"][..], "[possible values: thesis]"),
+        (&["--thesis", "t.toml"], "--baseline <NAME>"),
+    ] {
+        let refused = run(&[&evaluate[..], more].concat());
+        assert_eq!(refused.code, 2, "{}", refused.err);
+        assert!(refused.err.contains(words), "{}", refused.err);
+    }
+}
+
+#[test]
+fn a_log_is_drawn_anew() {
+    let folder = Folder::new();
+    let missing = run(&["curve", &folder.path("no run")]);
+    assert_eq!(missing.code, 3);
+    assert!(missing.err.contains("log.jsonl"), "{}", missing.err);
+    let line = r#"{"step":5,"loss":2.5,"rate":0.1,"held_out":{"n_shapes":1,"energy":2.0,"folds_pct":0.5}}"#;
+    folder.write("log.jsonl", line);
+    let done = run(&["curve", &folder.path(".")]);
+    assert_eq!((done.code, done.err.as_str()), (0, ""));
+    let svg = fs::read_to_string(folder.path("curve.svg")).unwrap();
+    assert!(svg.contains("distortion, held back"));
+}
+
+#[test]
 fn what_is_no_weights_file_or_no_set_is_named() {
     let folder = Folder::new();
     let wrong = folder.write("ball.obj", &ball(""));

@@ -41,6 +41,7 @@
 pub mod clean;
 pub mod decimate;
 pub mod deform;
+pub mod elementary;
 pub mod embed;
 pub mod flow;
 pub mod hierarchy;

@@ -5,6 +5,7 @@ mod common;
 
 use common::conformance::{check, hierarchies};
 use glam::DVec3;
+use orbflow_geometry::elementary::{atan2, hypot, sin_cos};
 use orbflow_geometry::embed::{OffsetPredictor, PredictError, Proposal, Settings, Solver, embed};
 use orbflow_geometry::hierarchy::CollapseHierarchy;
 use orbflow_geometry::mesh::{Id, VertexMap};
@@ -42,8 +43,8 @@ fn random_direction(seed: usize) -> DVec3 {
 
 /// Twice around the axis: no folds but at the poles, and degree 2.
 fn twice_around(p: DVec3) -> DVec3 {
-    let (sine, cosine) = (2.0 * p.y.atan2(p.x)).sin_cos();
-    let radius = p.x.hypot(p.y);
+    let (sine, cosine) = sin_cos(2.0 * atan2(p.y, p.x));
+    let radius = hypot(p.x, p.y);
     DVec3::new(radius * cosine, radius * sine, p.z)
 }
 

@@ -7,6 +7,7 @@ use glam::DVec3;
 use orbflow_geometry::decimate::{
     CollapseError, Settings, Simplified, collapse_to_tetrahedron, simplify,
 };
+use orbflow_geometry::elementary::sin_cos;
 use orbflow_geometry::hierarchy::CollapseHierarchy;
 use orbflow_geometry::mesh::{Id, TriangleMesh, VertexId};
 use orbflow_geometry::progress::{CancelToken, Progress};
@@ -70,7 +71,7 @@ fn torus(n: u32) -> TriangleMesh {
     let mut faces = Vec::new();
     for (i, j) in (0..n).flat_map(|i| (0..2 * n).map(move |j| (i, j))) {
         let [u, w] = [i, j].map(|k| f64::from(k) * std::f64::consts::TAU);
-        let [(su, cu), (sw, cw)] = [u / f64::from(n), w / f64::from(2 * n)].map(f64::sin_cos);
+        let [(su, cu), (sw, cw)] = [u / f64::from(n), w / f64::from(2 * n)].map(sin_cos);
         points.push(DVec3::new((2.0 + cu) * cw, (2.0 + cu) * sw, su));
         faces.push([id(i, j), id(i, j + 1), id(i + 1, j + 1)]);
         faces.push([id(i, j), id(i + 1, j + 1), id(i + 1, j)]);

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 /// From the ground up: what everything may ask whether to go on lies under the numbered floors.
 const FLOORS: [&[&str]; 5] = [
-    &["progress"],
+    &["elementary", "progress"],
     &["mesh", "random", "sparse"],
     &["hierarchy", "measure", "mirror", "nearest", "sphere_map"],
     &[

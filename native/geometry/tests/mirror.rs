@@ -5,6 +5,7 @@ mod common;
 use std::sync::Mutex;
 
 use glam::DVec3;
+use orbflow_geometry::elementary::{cos, exp, sin};
 use orbflow_geometry::embed::Solver;
 use orbflow_geometry::mesh::{PolygonMesh, TriangleMesh};
 use orbflow_geometry::nearest::Bvh;
@@ -35,7 +36,7 @@ fn flipped(mut p: DVec3, axis: usize, at: f64) -> DVec3 {
 fn even_blob(n: u32) -> TriangleMesh {
     common::mapped_cube(n, |p| {
         let s = p.normalize_or(DVec3::Z);
-        let bumps = (3.0 * s.x.abs() + 1.0).sin() + (4.0 * s.y + 0.5).sin() * (2.0 * s.z).cos();
+        let bumps = sin(3.0 * s.x.abs() + 1.0) + sin(4.0 * s.y + 0.5) * cos(2.0 * s.z);
         s * (1.0 + 0.15 * bumps)
     })
 }
@@ -51,7 +52,7 @@ fn even_limbs(n: u32) -> TriangleMesh {
     common::mapped_cube(n, |p| {
         let s = p.normalize_or(DVec3::Z);
         let grow = |(axis, length): &(DVec3, f64)| {
-            length * (-(1.0 - axis.normalize_or(DVec3::Y).dot(s)) * 12.0).exp()
+            length * exp(-(1.0 - axis.normalize_or(DVec3::Y).dot(s)) * 12.0)
         };
         s * (1.0 + limbs.iter().map(grow).sum::<f64>())
     })

@@ -5,6 +5,7 @@ mod common;
 use std::sync::Mutex;
 
 use glam::DVec3;
+use orbflow_geometry::elementary::powf;
 use orbflow_geometry::embed::Solver;
 use orbflow_geometry::measure;
 use orbflow_geometry::mesh::{FaceId, PolygonMesh, TriangleMesh};
@@ -51,7 +52,7 @@ fn any_ball() -> impl Strategy<Value = TriangleMesh> {
         };
         moved(
             &roughened(&mesh, seed, noise),
-            10_f64.powf(scale),
+            powf(10_f64, scale),
             DVec3::from_array(shift),
         )
     })

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
+use orbflow_geometry::elementary::ln;
 use orbflow_geometry::measure::area_vector;
 use orbflow_geometry::mesh::{Id, VertexId};
 
@@ -27,7 +28,7 @@ pub fn features(positions: &[DVec3], faces: &[[VertexId; 3]]) -> Vec<f32> {
     let rows = positions.iter().zip(&areas).zip(&sizes);
     let numbers = rows.flat_map(|((p, area), size)| {
         let normal = area.normalize_or_zero();
-        let log = (size / mean).max(LEAST_SHARE).ln();
+        let log = ln((size / mean).max(LEAST_SHARE));
         [p.x, p.y, p.z, normal.x, normal.y, normal.z, log]
     });
     numbers.map(|number| number as f32).collect()

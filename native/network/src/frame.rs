@@ -7,6 +7,7 @@
 use std::f64::consts::PI;
 
 use glam::{DMat3, DVec3};
+use orbflow_geometry::elementary::{atan2, sin_cos};
 use orbflow_geometry::measure::area_vector;
 use orbflow_geometry::mesh::{Id, VertexId};
 
@@ -74,8 +75,8 @@ pub fn eigenvectors(matrix: DMat3) -> [DVec3; 3] {
             if off.abs() <= f64::MIN_POSITIVE {
                 continue;
             }
-            let angle = 0.5 * (2.0 * off).atan2(a.col(j)[j] - a.col(i)[i]);
-            let (s, c) = angle.sin_cos();
+            let angle = 0.5 * atan2(2.0 * off, a.col(j)[j] - a.col(i)[i]);
+            let (s, c) = sin_cos(angle);
             let mut turn = DMat3::IDENTITY;
             turn.col_mut(i)[i] = c;
             turn.col_mut(j)[j] = c;

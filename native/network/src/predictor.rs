@@ -30,6 +30,13 @@ impl NetworkPredictor {
     }
 }
 
+impl Default for NetworkPredictor {
+    /// A predictor with the weights that every build carries.
+    fn default() -> Self {
+        Self::new(&Weights::shipped()).expect("the tests read the same weights")
+    }
+}
+
 impl OffsetPredictor for NetworkPredictor {
     fn name(&self) -> &'static str {
         "network"

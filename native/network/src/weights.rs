@@ -19,6 +19,8 @@ use thiserror::Error;
 use crate::features::N_FEATURES;
 use crate::net::{Network, Sizes};
 
+/// The weights that every build carries; `native/training/runs/README.md` says where they come from.
+const SHIPPED: &[u8] = include_bytes!("../weights.orbflow");
 const MAGIC: &[u8; 8] = b"ORBFLOWN";
 const VERSION: u32 = 1;
 /// The length of what stands before the header.
@@ -120,6 +122,11 @@ impl Header {
 }
 
 impl Weights {
+    /// The weights that every build carries.
+    pub fn shipped() -> Self {
+        Self::from_bytes(SHIPPED).expect("the tests read the same bytes")
+    }
+
     /// The bytes of a weights file, parameters in half precision.
     pub fn to_bytes(&self) -> Vec<u8> {
         let header = serde_json::to_vec(&self.header).expect("a header is plain numbers and text");

@@ -12,23 +12,24 @@ use pyo3::types::PyBytes;
 
 use crate::errors::InputError;
 
-/// The predictor of a name, with its weights: the bytes of a file or its path.
+/// The predictor of a name, with its weights: the bytes of a file or its path, or those of the wheel.
 ///
 /// Weights are numbers; nothing in them is executed.
 ///
 /// # Errors
-/// `ValueError` with the names there are; `InputError` when weights are missing, cannot be read, or
-/// are not such a file.
+/// `ValueError` with the names there are, and for weights that nothing would read; `InputError` when
+/// weights cannot be read or are not such a file.
 pub fn predictor(
     name: &str,
     weights: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Box<dyn OffsetPredictor + Send>> {
     match (name, weights) {
-        ("solver", _) => Ok(Box::new(Solver::default())),
-        ("network", Some(weights)) => Ok(Box::new(network(weights)?)),
-        ("network", None) => Err(InputError::new_err(
-            "the network needs weights: a file that `orbflow train` wrote",
+        ("solver", None) => Ok(Box::new(Solver::default())),
+        ("solver", Some(_)) => Err(PyValueError::new_err(
+            "weights: they are for the predictor `network` alone",
         )),
+        ("network", Some(weights)) => Ok(Box::new(network(weights)?)),
+        ("network", None) => Ok(Box::<NetworkPredictor>::default()),
         _ => Err(PyValueError::new_err(format!(
             "predictor: unknown name `{name}`, expected `solver` or `network`"
         ))),

@@ -49,8 +49,10 @@ pub struct Remeshed {
 /// across "x", "y" or "z", or with "auto" across the first in which the mesh is symmetric.
 /// Edges of the result that lie on `carried_edges` `(E, 2) int32` are told, so that marks on these can
 /// be carried over. With `cut_edges` `(E, 2) int32`, along which data on corners is cut as texture
-/// coordinates are along seams, the result tells where each of its elements comes from. `predictor` is "solver", or "network" with `weights`: the bytes of a file that
-/// `orbflow train` wrote, or its path. `n_crosses` is how many crosses of the field to tell at most.
+/// coordinates are along seams, the result tells where each of its elements comes from.
+/// `predictor` is "solver" or "network"; the network has the wheel's weights, or `weights`: the bytes
+/// of a file that `orbflow train` wrote, or its path. `n_crosses` is how many crosses of the field to
+/// tell at most.
 /// `score_samples` is how many points of each surface the score looks at; 0 makes no score.
 /// `progress` is called on the calling thread, at most 20 times a second, with the name of the step
 /// and the share of the work that is done. The same input and settings give the same bytes.

@@ -1,8 +1,11 @@
 //! The learning curve as a picture.
 
+use std::fs;
+use std::path::Path;
+
 use plotters::prelude::*;
 
-use crate::run::Line;
+use crate::run::{Line, TrainError, file_error};
 
 const SIZE: (u32, u32) = (900, 640);
 const TEXT: (&str, u32) = ("sans-serif", 14);
@@ -12,8 +15,24 @@ type Curve<'a> = (&'a str, Vec<(f64, f64)>, RGBColor);
 type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 type Drawn<'a> = Result<(), DrawingAreaErrorKind<<SVGBackend<'a> as DrawingBackend>::ErrorType>>;
 
-/// Draws the log of a run as SVG: loss and held-back distortion above, held-back folds below.
-pub fn curve(lines: &[Line]) -> String {
+/// Draws the log of a run, `log.jsonl`, as its `curve.svg`.
+///
+/// # Errors
+/// [`TrainError::File`].
+pub fn draw_log(run: &Path) -> Result<(), TrainError> {
+    let path = run.join("log.jsonl");
+    let text = fs::read_to_string(&path).map_err(|cause| file_error(&path, cause))?;
+    // A line that a kill cut, or that holds no number, is not drawn.
+    let lines: Vec<Line> = text
+        .lines()
+        .filter_map(|line| serde_json::from_str(line).ok())
+        .collect();
+    let path = run.join("curve.svg");
+    fs::write(&path, curve(&lines)).map_err(|cause| file_error(&path, cause))
+}
+
+/// Draws the lines of a log as SVG: loss and held-back distortion above, held-back folds below.
+fn curve(lines: &[Line]) -> String {
     let mut svg = String::new();
     draw(lines, &mut svg).expect("a picture in memory can be drawn");
     svg
@@ -39,17 +58,25 @@ fn draw<'a>(lines: &[Line], svg: &'a mut String) -> Drawn<'a> {
             RGBColor(30, 90, 180),
         ),
     ];
-    panel(&above, "mean log form of the distortion", &distortion)?;
+    // Names stand where the curves are not: distortion never comes near zero, folds start high.
+    let what = "mean log form of the distortion";
+    panel(&above, what, &distortion, SeriesLabelPosition::LowerLeft)?;
     let folds = of(|line| line.held_out.folds_pct);
     panel(
         &below,
         "folded triangles, %",
         &[("folds, held back", folds, RGBColor(30, 90, 180))],
+        SeriesLabelPosition::UpperRight,
     )?;
     root.present()
 }
 
-fn panel<'a>(area: &Area<'a>, what: &str, curves: &[Curve<'_>]) -> Drawn<'a> {
+fn panel<'a>(
+    area: &Area<'a>,
+    what: &str,
+    curves: &[Curve<'_>],
+    legend: SeriesLabelPosition,
+) -> Drawn<'a> {
     let points = || curves.iter().flat_map(|(_, points, _)| points);
     let last = points().map(|p| p.0).fold(1.0, f64::max);
     let most = points().map(|p| p.1).fold(f64::MIN_POSITIVE, f64::max);
@@ -71,6 +98,7 @@ fn panel<'a>(area: &Area<'a>, what: &str, curves: &[Curve<'_>]) -> Drawn<'a> {
     let mut labels = chart.configure_series_labels();
     labels
         .label_font(TEXT)
+        .position(legend)
         .background_style(WHITE)
         .border_style(BLACK);
     labels.draw()

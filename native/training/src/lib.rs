@@ -8,7 +8,7 @@
 //! There are no targets: the [`loss`] is the distortion of the proposed map. What was tried and
 //! what it reached is in `docs/training.md`.
 
-mod curve;
+pub mod curve;
 pub mod engine;
 pub mod evaluate;
 mod licence;

@@ -19,7 +19,7 @@ use orbflow_network::weights::{Header, ReadWeightsError, Weights};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::curve::curve;
+use crate::curve::draw_log;
 use crate::evaluate::{Figures, evaluate};
 use crate::loss::Faces;
 use crate::net::BurnNetwork;
@@ -370,17 +370,10 @@ fn log(run: &Path, line: &Line) -> Result<(), TrainError> {
     };
     open.and_then(write)
         .map_err(|cause| file_error(&path, cause))?;
-    let text = fs::read_to_string(&path).map_err(|cause| file_error(&path, cause))?;
-    // A line that a kill cut, or that holds no number, is not drawn.
-    let lines: Vec<Line> = text
-        .lines()
-        .filter_map(|line| serde_json::from_str(line).ok())
-        .collect();
-    let path = run.join("curve.svg");
-    fs::write(&path, curve(&lines)).map_err(|cause| file_error(&path, cause))
+    draw_log(run)
 }
 
-fn file_error(path: &Path, cause: io::Error) -> TrainError {
+pub(crate) fn file_error(path: &Path, cause: io::Error) -> TrainError {
     let path = path.to_owned();
     TrainError::File { path, cause }
 }

@@ -1,5 +1,6 @@
 //! The learning rate of each step: one cycle, up in a straight line and down by a cosine.
 
+use orbflow_geometry::elementary::cos;
 use std::f64::consts::PI;
 
 /// The share of the steps on which the rate rises.
@@ -13,7 +14,7 @@ pub fn one_cycle(step: usize, n_steps: usize, highest: f64) -> f64 {
     let height = if share < RISE {
         share / RISE
     } else {
-        0.5 + 0.5 * (PI * (share - RISE) / (1.0 - RISE)).cos()
+        0.5 + 0.5 * cos(PI * (share - RISE) / (1.0 - RISE))
     };
     highest * (LEAST + (1.0 - LEAST) * height)
 }

@@ -110,27 +110,25 @@ fn other_settings_do_not_resume() {
 }
 
 #[test]
-fn a_short_run_helps_on_shapes_never_seen_and_its_weights_can_be_read() {
+fn a_minute_of_training_helps_on_shapes_never_seen_and_its_weights_can_be_read() {
     let settings = Settings {
-        n_steps: 150,
+        n_steps: 300,
+        interval: 300,
         ..small()
     };
     let samples = samples(10, &settings.sizes.levels);
+    let (seen, unseen) = samples.split_at(6);
     let folder = tempfile::tempdir().unwrap();
     let mut training = Training::new(settings, &Device::flex());
-    let before = evaluate(&training.network(), &samples[8..]).energy;
-    training
-        .run(
-            [&samples[..8], &samples[8..]],
-            folder.path(),
-            &Progress::none(),
-        )
-        .unwrap();
-    let after = evaluate(&training.network(), &samples[8..]).energy;
-    assert!(after < before, "{before} to {after}");
+    let quiet = Progress::none();
+    let before = evaluate(&training.network(), unseen).energy;
+    training.run([seen, unseen], folder.path(), &quiet).unwrap();
+    let after = evaluate(&training.network(), unseen).energy;
+    // From 4.72 to 3.38 when this was written.
+    assert!(after < 0.8 * before, "{before} to {after}");
     let bytes = training.weights("a test").to_bytes();
     let read = Weights::from_bytes(&bytes).unwrap();
-    assert_eq!(read.header.provenance, "a test; 150 steps");
+    assert_eq!(read.header.provenance, "a test; 300 steps");
 }
 
 /// The loss of some directions for one sample.

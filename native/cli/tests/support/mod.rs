@@ -8,6 +8,7 @@ use std::process::{Child, Command, Stdio};
 use std::thread;
 use std::time::Duration;
 
+use orbflow_geometry::elementary::sin;
 use tempfile::TempDir;
 
 /// How many faces [`ball`] has.
@@ -69,7 +70,7 @@ fn grid(n: usize, before: &str) -> String {
             1 => [v, w, u],
             _ => [u, v, w],
         };
-        let r = (1.0 + 0.2 * (3.0 * x + y).sin()) / (x * x + y * y + z * z).sqrt();
+        let r = (1.0 + 0.2 * sin(3.0 * x + y)) / (x * x + y * y + z * z).sqrt();
         let line = format!("v {:.6} {:.6} {:.6}\n", x * r, y * r, z * r);
         let next = ids.len() + 1;
         *ids.entry(line).or_insert_with_key(|line| {

@@ -66,6 +66,7 @@ fn is_triangulation(n: u32, triangles: &[[u32; 3]]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elementary::direction;
 
     fn cut(points: &[[f64; 2]]) -> Option<Vec<[u32; 3]>> {
         let points: Vec<DVec2> = points.iter().map(|&p| DVec2::from_array(p)).collect();
@@ -75,9 +76,7 @@ mod tests {
     #[test]
     fn a_concave_polygon_is_covered_once() {
         let star: Vec<DVec2> = (0..40)
-            .map(|i| {
-                DVec2::from_angle(f64::from(i) * 0.05 * std::f64::consts::PI) * f64::from(1 + i % 2)
-            })
+            .map(|i| direction(f64::from(i) * 0.05 * std::f64::consts::PI) * f64::from(1 + i % 2))
             .collect();
         let triangles = clip_ears(&star).unwrap();
         let area = |p: DVec2, q: DVec2, r: DVec2| (q - p).perp_dot(r - p) / 2.0;

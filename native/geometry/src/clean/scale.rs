@@ -1,5 +1,6 @@
 //! Areas that neither overflow nor vanish, whatever the size of the coordinates.
 
+use crate::elementary::log2;
 use glam::DVec3;
 
 /// A triangle whose height is below this share of its longest side is a line or a point.
@@ -20,7 +21,7 @@ impl Scale {
             .iter()
             .fold(0.0, |m: f64, p| m.max(p.abs().max_element()));
         let exponent = if largest > 0.0 {
-            largest.log2().floor() as i32
+            log2(largest).floor() as i32
         } else {
             0
         };

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::*;
+use crate::elementary::{cos, sin};
 use crate::shapes::CUBE_QUADS;
 
 fn cube_points() -> Vec<DVec3> {
@@ -210,11 +211,11 @@ fn a_moebius_strip_is_refused() {
         .map(|i| {
             let turn = f64::from(i / 2) / f64::from(n) * std::f64::consts::TAU;
             let across = f64::from(i % 2) - 0.5;
-            let radius = 2.0 + across * (turn / 2.0).cos();
+            let radius = 2.0 + across * cos(turn / 2.0);
             DVec3::new(
-                radius * turn.cos(),
-                radius * turn.sin(),
-                across * (turn / 2.0).sin(),
+                radius * cos(turn),
+                radius * sin(turn),
+                across * sin(turn / 2.0),
             )
         })
         .collect();

@@ -131,6 +131,16 @@ impl Seams {
     }
 }
 
+/// Moves the free vertices of the faces around one that is on its way, which may stand in it.
+fn shove(sheet: &mut Sheet, v: VertexId, way: DVec3) {
+    let faces = sheet.ring(v).iter();
+    let corners = faces.flat_map(|&face| sheet.faces()[face].corners().to_vec());
+    let around: BTreeSet<VertexId> = corners.filter(|&u| u != v && !sheet.is_pinned(u)).collect();
+    for u in around {
+        walk(sheet, u, way);
+    }
+}
+
 impl Track {
     fn new(seam: Seam) -> Self {
         Self {
@@ -148,10 +158,18 @@ impl Track {
     fn approach(&self, sheet: &mut Sheet, i: usize, edge: f64) -> bool {
         let v = self.seam.vertices[i];
         let goal = self.seam.line.point(self.seam.at[i]);
-        let way = (goal - sheet.position(v)).clamp_length_max(STRIDE * edge);
-        walk(sheet, v, way);
-        let is_near = sheet.position(v).distance(goal) <= NEAR * edge;
-        is_near && lift_towards(sheet, v, goal, LEAST_QUALITY) == Some(0)
+        for is_last in [false, true] {
+            let way = (goal - sheet.position(v)).clamp_length_max(STRIDE * edge);
+            walk(sheet, v, way);
+            let is_near = sheet.position(v).distance(goal) <= NEAR * edge;
+            if is_near && lift_towards(sheet, v, goal, LEAST_QUALITY) == Some(0) {
+                return true;
+            }
+            if !is_last {
+                shove(sheet, v, way);
+            }
+        }
+        false
     }
 
     fn slide(&mut self, sheet: &mut Sheet, stars: &Stars) {
@@ -159,9 +177,6 @@ impl Track {
         let whole = self.seam.line.length();
         for i in usize::from(!self.seam.line.is_closed())..n {
             let v = self.seam.vertices[i];
-            if !self.is_there[i] {
-                continue;
-            }
             let now = self.seam.at[i];
             let before = if i == 0 {
                 self.seam.at[n - 1] - whole
@@ -169,6 +184,11 @@ impl Track {
                 self.seam.at[i - 1]
             };
             let ahead = self.seam.at[i + 1];
+            if !self.is_there[i] {
+                // Its neighbours would leave it no place.
+                self.set(i, f64::midpoint(before, ahead));
+                continue;
+            }
             let gap = (ahead - now).min(now - before) * ROOM;
             let [back, on] = [now - gap, now + gap].map(|at| self.seam.line.point(at));
             let tangent = (on - back).normalize_or_zero();
@@ -177,11 +197,16 @@ impl Track {
             let pull = (sum / star.len() as f64 - sheet.position(v)).dot(tangent);
             let at = now + (DAMPING * pull).clamp(-gap.max(0.0), gap.max(0.0));
             if self.move_to(sheet, v, at) {
-                self.seam.at[i] = at;
-                if i == 0 {
-                    self.seam.at[n] = at + whole;
-                }
+                self.set(i, at);
             }
+        }
+    }
+
+    fn set(&mut self, i: usize, at: f64) {
+        self.seam.at[i] = at;
+        if i == 0 {
+            let n = self.n() - 1;
+            self.seam.at[n] = at + self.seam.line.length();
         }
     }
 

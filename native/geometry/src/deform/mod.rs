@@ -102,6 +102,8 @@ pub struct Deformed {
     pub sphere: Vec<DVec3>,
     /// The edges that lie along the target's sharp or marked ones, each once, in order.
     pub features: Vec<[VertexId; 2]>,
+    /// Those and the edges that were led there but did not arrive, each once, in order.
+    pub led: Vec<[VertexId; 2]>,
     /// What was done.
     pub report: Report,
 }
@@ -227,7 +229,7 @@ impl Deformed {
     }
 
     fn new(sheet: Sheet, mut report: Report) -> Self {
-        let features = sheet.features();
+        let [features, led] = [sheet.features(), sheet.led()];
         let (mesh, sphere) = sheet.into_mesh();
         debug_assert_eq!(check_cover(&mesh, &sphere), Ok(()));
         report.n_inverted = untangle::n_inverted(&mesh);
@@ -235,6 +237,7 @@ impl Deformed {
             mesh,
             sphere,
             features,
+            led,
             report,
         }
     }

@@ -116,6 +116,7 @@ mod tests {
 
     use super::*;
     use crate::deform::project::project;
+    use crate::elementary::exp;
     use crate::measure::vertex_normals;
     use crate::mesh::{FaceId, PolygonMesh, TriangleMesh};
     use crate::shapes;
@@ -126,7 +127,7 @@ mod tests {
     fn heights(primitive: &PolygonMesh, sharpness: f64, span: Span) -> [f64; 2] {
         let round = shapes::sphere(16);
         let sphere: VertexMap<DVec3> = round.positions().iter().copied().collect();
-        let spike = |p: &DVec3| *p * (1.0 + 0.4 * (sharpness * (p.z - 1.0)).exp());
+        let spike = |p: &DVec3| *p * (1.0 + 0.4 * exp(sharpness * (p.z - 1.0)));
         let pointed = round.positions().iter().map(spike).collect();
         let mesh = TriangleMesh::new(pointed, round.faces().to_vec()).unwrap();
         let target = Target::new(mesh.clone(), &Progress::none()).unwrap();

@@ -7,6 +7,7 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::elementary::sin_cos;
 use crate::mesh::{FaceId, FaceMap, PolygonMesh, VertexId, VertexMap};
 use crate::sphere_map::{SphereMap, SurfacePoint, is_unfolded, walk_along};
 
@@ -61,7 +62,7 @@ impl Point {
     pub fn ways(&self) -> [DVec3; 8] {
         let (x, y) = self.normal.any_orthonormal_pair();
         array::from_fn(|i| {
-            let (sin, cos) = (i as f64 * TAU / 8.0).sin_cos();
+            let (sin, cos) = sin_cos(i as f64 * TAU / 8.0);
             x * cos + y * sin
         })
     }
@@ -159,12 +160,17 @@ impl<'a> Sheet<'a> {
         self.kept.contains(&[a.min(b), a.max(b)])
     }
 
-    /// The edges that are saved from flips and have both ends where they were led, in order.
-    pub fn features(&self) -> Vec<[VertexId; 2]> {
-        let is_there = |[a, b]: &[VertexId; 2]| self.is_pinned(*a) && self.is_pinned(*b);
-        let mut edges: Vec<_> = self.kept.iter().copied().filter(is_there).collect();
+    /// The edges that are saved from flips, in order.
+    pub fn led(&self) -> Vec<[VertexId; 2]> {
+        let mut edges: Vec<_> = self.kept.iter().copied().collect();
         edges.sort_unstable();
         edges
+    }
+
+    /// Those that have both ends where they were led, in order.
+    pub fn features(&self) -> Vec<[VertexId; 2]> {
+        let is_there = |[a, b]: &[VertexId; 2]| self.is_pinned(*a) && self.is_pinned(*b);
+        self.led().into_iter().filter(is_there).collect()
     }
 
     /// The face on the left of the edge from `a` to `b`.

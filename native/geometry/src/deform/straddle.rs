@@ -190,6 +190,7 @@ mod tests {
     use super::*;
     use crate::deform::project::project;
     use crate::deform::sites;
+    use crate::elementary::exp;
     use crate::measure::vertex_normals;
     use crate::mesh::{FaceId, TriangleMesh};
     use crate::shapes;
@@ -200,7 +201,7 @@ mod tests {
     fn fitted(n_sites: usize, squareness: f64) -> [f64; 2] {
         let round = shapes::sphere(24);
         let sphere = round.positions().iter().copied().collect();
-        let spike = |p: &DVec3| *p * (1.0 + 0.3 * (40.0 * (p.z - 1.0)).exp());
+        let spike = |p: &DVec3| *p * (1.0 + 0.3 * exp(40.0 * (p.z - 1.0)));
         let pointed = round.positions().iter().map(spike).collect();
         let mesh = TriangleMesh::new(pointed, round.faces().to_vec()).unwrap();
         let target = Target::new(mesh.clone(), &Progress::none()).unwrap();

@@ -1,6 +1,7 @@
 use glam::DVec3;
 
 use super::*;
+use crate::elementary::sin;
 use crate::mesh::TriangleMesh;
 use crate::progress::CancelToken;
 use crate::shapes;
@@ -184,7 +185,7 @@ fn flowed(mesh: &TriangleMesh, noise: f64, settings: &Settings) -> Deformed {
     let wanted: Vec<_> = quads
         .positions()
         .iter()
-        .map(|&p| map.surface_position(map.locate(p)) + noise * (p * 97.0).map(f64::sin))
+        .map(|&p| map.surface_position(map.locate(p)) + noise * (p * 97.0).map(sin))
         .collect();
     let flowing = flowing(&quads, &wanted, (&crosses, &sizes));
     let target = target(mesh.clone());

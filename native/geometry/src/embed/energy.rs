@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::elementary::ln_1p;
 use crate::mesh::{TriangleMesh, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
 use crate::sphere_map::triple_product;
@@ -60,7 +61,7 @@ fn log_distortion([a, b, c]: [DVec3; 3], [p, q, r]: [DVec3; 3], scale: f64) -> f
     let density = dirichlet / unscaled / (unscaled * scale);
     let ratio = (triple_product(p, q, r) / (unscaled * scale)).max(LEAST_RATIO);
     // No map has g < 2 d; a triangle shrunk to a point has after the ratio was bounded.
-    (density.max(2.0 * ratio) * (1.0 + ratio.powi(-2))).ln_1p()
+    ln_1p(density.max(2.0 * ratio) * (1.0 + ratio.powi(-2)))
 }
 
 fn double_area([a, b, c]: [DVec3; 3]) -> f64 {

@@ -7,6 +7,7 @@
 //! where areas are kept. Everything is computed from differences to p in
 //! its tangent plane, so that triangles of 10⁻⁷ keep their digits.
 
+use crate::elementary::hypot;
 use glam::{DVec2, DVec3};
 
 /// The rest shape of a triangle (p, b, c) of a fan around p.
@@ -169,7 +170,7 @@ impl Derivatives {
     fn step(&self) -> DVec2 {
         let [xx, xy, yy] = self.hessian;
         let mean = f64::midpoint(xx, yy);
-        let spread = (0.5 * (xx - yy)).hypot(xy);
+        let spread = hypot(0.5 * (xx - yy), xy);
         let least = LEAST_CURVATURE * (mean.abs() + spread);
         let shift = (least - (mean - spread)).max(0.0);
         let [xx, yy] = [xx + shift, yy + shift];
@@ -187,6 +188,7 @@ impl Derivatives {
 mod tests {
     use super::super::rest::Metric;
     use super::*;
+    use crate::elementary::{cos, sin};
     use crate::random::Random;
 
     /// A random star of `n` triangles around a random point.
@@ -198,7 +200,7 @@ mod tests {
         let point = |i: usize, random: &mut Random| {
             let angle = (i as f64 + 0.6 * random.unit()) / n as f64 * std::f64::consts::TAU;
             let radius = 0.1 + 0.3 * random.unit();
-            (p + radius * (x * angle.cos() + y * angle.sin())).normalize_or(p)
+            (p + radius * (x * cos(angle) + y * sin(angle))).normalize_or(p)
         };
         let mut ring: Vec<DVec3> = (0..n).map(|i| point(i, &mut random)).collect();
         ring.push(ring[0]);
@@ -234,7 +236,7 @@ mod tests {
             let at = |s: f64, t: f64| {
                 let step = x * s + y * t;
                 let angle = step.length().max(f64::MIN_POSITIVE);
-                fan.energy(p * angle.cos() + step / angle * angle.sin())
+                fan.energy(p * cos(angle) + step / angle * sin(angle))
             };
             let size = d.gradient.length() + d.energy;
             let error = (d.gradient - differences(&at, 1e-5)).length() / size;

@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::growth::{GrowError, Growth, Limits};
 use super::partial::Partial;
 use super::rest::Stiffness;
+use crate::elementary::atan2;
 use crate::hierarchy::Collapse;
 use crate::mesh::{TriangleMesh, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
@@ -180,7 +181,7 @@ impl Clearing {
 fn winds_once(p: DVec3, ring: &[DVec3]) -> bool {
     let turn = |e: &[DVec3]| {
         let [u, w] = [e[0] - p, e[1] - p].map(|d| d - p * d.dot(p));
-        triple_product(p, u, w).atan2(u.dot(w))
+        atan2(triple_product(p, u, w), u.dot(w))
     };
     ring.windows(2).map(turn).sum::<f64>() < 3.0 * PI
 }

@@ -16,6 +16,7 @@ use thiserror::Error;
 
 use super::complex::{Complex, Dressing, Turn, flip_moves, move_values};
 use super::field::{Charts, OrientationField};
+use crate::elementary::{atan2, direction, exp, sin};
 use crate::mesh::{FaceId, HalfedgeId, HalfedgeMap, TriangleMesh, VertexMap};
 use crate::progress::{Cancelled, Progress};
 use crate::sparse::{Cholesky, NotPositiveDefinite, SymmetricMatrix};
@@ -174,7 +175,7 @@ impl Metric {
                 let ends = [self.complex.origins[h], self.complex.target(h)];
                 // From the smaller end, so that twins agree to the last bit.
                 let [a, b] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-                self.lengths[h] = before[h] * (0.5 * share * (step[a] + step[b])).exp();
+                self.lengths[h] = before[h] * exp(0.5 * share * (step[a] + step[b]));
             }
             if self.is_metric() && squares(&self.misses()) < allowed {
                 return true;
@@ -202,7 +203,7 @@ impl Metric {
             (opposite + (a - b)) * (opposite - (a - b)),
             (a + b + opposite) * (a + b - opposite),
         ];
-        2.0 * half[0].max(0.0).sqrt().atan2(half[1].max(0.0).sqrt())
+        2.0 * atan2(half[0].max(0.0).sqrt(), half[1].max(0.0).sqrt())
     }
 
     /// The cotangent of the angle opposite to a halfedge.
@@ -239,7 +240,7 @@ impl Metric {
         let t = self.complex.twins[h];
         let [a, b] = [self.lengths[h.prev()], self.lengths[t.next()]];
         // |a − b|² + 4ab sin²: the law of cosines without its cancellation.
-        let half = (0.5 * at_origin).sin();
+        let half = sin(0.5 * at_origin);
         let diagonal = ((a - b) * (a - b) + 4.0 * a * b * half * half).sqrt();
         self.complex.flip_edge(h);
         move_values(&mut self.lengths, &flip_moves(h, t));
@@ -272,8 +273,8 @@ impl Metric {
 
     fn lay(&mut self, h: HalfedgeId, vector: DVec2) {
         let [angle, side] = [self.angle(h), self.lengths[h.prev()]];
-        let direction = vector / self.lengths[h];
-        let apex = direction.rotate(DVec2::from_angle(angle)) * side;
+        let along = vector / self.lengths[h];
+        let apex = along.rotate(direction(angle)) * side;
         let start = &mut self.complex.start;
         start[h] = vector;
         start[h.next()] = apex - vector;

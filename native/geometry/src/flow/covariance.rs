@@ -1,12 +1,11 @@
 //! How periods move together at least cost: a dense inverse that equations and fixed values shrink.
 
-use faer::linalg::solvers::{DenseSolveCore, Llt};
-use faer::{Mat, Side};
 use glam::DVec2;
 
 use super::complex::Complex;
 use super::periods::dot;
 use crate::mesh::HalfedgeId;
+use crate::sparse::SymmetricMatrix;
 
 /// The bounds of an edge's weight: a needle must not outweigh the rest, nor an edge count nothing.
 const WEIGHTS: [f64; 2] = [0.1, 3.0];
@@ -79,13 +78,26 @@ impl Dense {
     /// The inverse of an energy's matrix: what a unit of pull on one component does to all.
     #[must_use]
     pub fn inverse(&self) -> Self {
-        let matrix = Mat::from_fn(self.n, self.n, |i, j| self.values[i * self.n + j]);
-        let factor = Llt::new(matrix.as_ref(), Side::Lower)
+        let n = self.n;
+        let mut matrix = SymmetricMatrix::new(n);
+        for i in 0..n {
+            for j in (0..=i).filter(|j| self.values[i * n + j] != 0.0) {
+                matrix.add(i, j, self.values[i * n + j]);
+            }
+        }
+        let factor = matrix
+            .factorize()
             .expect("a sum of squares with a positive diagonal added is positive definite");
-        let inverse = factor.inverse();
-        let mut values = Vec::with_capacity(self.n * self.n);
-        for i in 0..self.n {
-            values.extend((0..self.n).map(|j| inverse[(i.max(j), i.min(j))]));
+        let mut values = vec![0.0; n * n];
+        for (i, column) in values.chunks_exact_mut(n).enumerate() {
+            column[i] = 1.0;
+            factor.solve(column);
+        }
+        // The same bits on both sides of the diagonal.
+        for i in 0..n {
+            for j in 0..i {
+                values[j * n + i] = values[i * n + j];
+            }
         }
         Self { n: self.n, values }
     }

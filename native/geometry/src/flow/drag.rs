@@ -209,6 +209,7 @@ pub fn has_angles(complex: &Complex) -> bool {
 #[allow(clippy::float_cmp)] // A share of 1 is exact.
 mod tests {
     use super::*;
+    use crate::elementary::sin_cos;
     use crate::flow::complex::tests::box_complex;
     use crate::flow::periods::choose;
     use crate::random::Random;
@@ -272,7 +273,7 @@ mod tests {
     fn rough_angles_are_near() {
         for i in 1..2000 {
             let angle = f64::from(i) * PI / 2000.0;
-            let (y, x) = angle.sin_cos();
+            let (y, x) = sin_cos(angle);
             assert!((rough_angle(7.0 * x, 7.0 * y) - angle).abs() < 4e-3);
         }
     }

@@ -11,7 +11,7 @@ use super::quads::{Error, Guides, Settings};
 use super::singularities::tidy;
 use super::wish::wish;
 use crate::measure::{sharp_edges, total_area};
-use crate::mesh::{FaceMap, HalfedgeId, HalfedgeMap, TriangleMesh};
+use crate::mesh::{FaceMap, HalfedgeMap, TriangleMesh};
 use crate::mirror::Doubled;
 use crate::progress::Progress;
 
@@ -19,14 +19,26 @@ use crate::progress::Progress;
 pub(super) struct Dressed {
     pub field: OrientationField,
     pub wish: HalfedgeMap<DVec2>,
-    /// The edges that quads should lie along but for those in the plane.
-    pub sharp: HalfedgeMap<bool>,
-    /// What to keep to; without lines if these are not clear.
-    pub plan: Plan,
+    /// The edges that quads should lie along but for marked ones and those in the plane.
+    sharp: HalfedgeMap<bool>,
+    /// What to keep to: all lines, if the sharp ones are clear; those of marked edges alone, if
+    /// there are any; no lines.
+    pub plans: Vec<Plan>,
+}
+
+impl Dressed {
+    /// Whether those lines of a plan that are met hold enough of the sharp edges, if it has any.
+    pub fn are_met(&self, mesh: &TriangleMesh, plan: &Plan, is_met: &[bool]) -> bool {
+        let length = |line: &Line| line.length_of(mesh, |h| self.sharp[*h]);
+        let lines = plan.lines().zip(is_met).filter(|(_, is_met)| **is_met);
+        let on_lines = lines.map(|(line, _)| length(line)).sum();
+        let has_sharp = plan.beside.iter().any(|line| length(line) > 0.0);
+        !has_sharp || creases::are_clear(mesh, &self.sharp, on_lines)
+    }
 }
 
 /// The field, its singularities tidied for quads of the wanted sizes, the wish, and the lines of
-/// sharp edges if these are clear.
+/// marked edges and of sharp ones if these are clear.
 pub(super) fn dress(
     mesh: &TriangleMesh,
     (guides, sizes): (Guides<'_>, &FaceMap<f64>),
@@ -38,11 +50,16 @@ pub(super) fn dress(
         sharp_angle: sharp_angle.min(PI),
         ..settings.field
     };
-    let sharp = joined(&sharp_edges(mesh, sharp_angle), guides.marked);
-    let along = match guides.mirror {
-        Some(doubled) => joined(&sharp, &plane_edges(doubled)),
-        None => sharp.clone(),
+    let plane = |lines: &HalfedgeMap<bool>| match guides.mirror {
+        Some(doubled) => either(lines, &plane_edges(doubled)),
+        None => lines.clone(),
     };
+    let all = either(&sharp_edges(mesh, sharp_angle), guides.lines);
+    let along = plane(&all);
+    let both = all.iter().zip(guides.marked);
+    let sharp: HalfedgeMap<bool> = both
+        .map(|(&is_line, &is_marked)| is_line && !is_marked)
+        .collect();
     let part = progress.part("", 0.0, 0.5);
     let mut field = field::orient_along(mesh, (&pull, &along), &part)?;
     let mirror = |field: &mut OrientationField| {
@@ -54,25 +71,27 @@ pub(super) fn dress(
     tidy(mesh, &mut field, sizes);
     mirror(&mut field);
     let h = (total_area(mesh) / settings.n_quads.max(1) as f64).sqrt();
-    let is_sharp = |h: &HalfedgeId| sharp[*h];
-    let all = creases::lines(mesh, &field, &along, h);
-    let on_lines = all.iter().map(|line| line.length_of(mesh, is_sharp)).sum();
-    let are_clear = creases::are_clear(mesh, &sharp, on_lines);
-    if are_clear {
-        creases::attract(mesh, &mut field, &sharp, sizes);
-        mirror(&mut field);
+    let lines = creases::lines(mesh, &field, &along, h).into_iter();
+    let on_lines = lines.map(|line| line.length_of(mesh, |h| sharp[*h])).sum();
+    let mut kept = vec![guides.marked];
+    if creases::are_clear(mesh, &sharp, on_lines) {
+        kept.insert(0, &all);
     }
+    creases::attract(mesh, &mut field, kept[0], sizes);
+    mirror(&mut field);
     let part = progress.part("", 0.5, 0.7);
     field::settle_along(mesh, &mut field, (&pull, &along), &part)?;
     mirror(&mut field);
     let wish = wish(mesh, &field, sizes, &progress.part("", 0.7, 1.0))?;
-    let lines = if are_clear {
-        creases::lines(mesh, &field, &along, h)
-    } else {
-        Vec::new()
-    };
+    let lines = |kept: &HalfedgeMap<bool>| creases::lines(mesh, &field, &plane(kept), h);
+    let kept = kept
+        .into_iter()
+        .filter(|kept| kept.iter().any(|&is_line| is_line));
+    let lines = kept.map(lines).chain([Vec::new()]);
     Ok(Dressed {
-        plan: planned(guides.mirror, &field, lines),
+        plans: lines
+            .map(|lines| planned(guides.mirror, &field, lines))
+            .collect(),
         field,
         wish,
         sharp,
@@ -80,11 +99,7 @@ pub(super) fn dress(
 }
 
 /// What to keep to with some lines of sharp edges.
-pub(super) fn planned(
-    mirror: Option<&Doubled>,
-    field: &OrientationField,
-    beside: Vec<Line>,
-) -> Plan {
+fn planned(mirror: Option<&Doubled>, field: &OrientationField, beside: Vec<Line>) -> Plan {
     match mirror {
         Some(doubled) => plan(doubled, field, &beside),
         None => Plan {
@@ -95,6 +110,6 @@ pub(super) fn planned(
     }
 }
 
-fn joined(a: &HalfedgeMap<bool>, b: &HalfedgeMap<bool>) -> HalfedgeMap<bool> {
+fn either(a: &HalfedgeMap<bool>, b: &HalfedgeMap<bool>) -> HalfedgeMap<bool> {
     a.iter().zip(b).map(|(a, b)| a | b).collect()
 }

@@ -9,7 +9,7 @@ use thiserror::Error;
 use super::cones::keep_cones;
 use super::conformal::{FlattenError, flatten};
 use super::creases::{self, Line};
-use super::dress::{Dressed, dress, planned};
+use super::dress::{Dressed, dress};
 use super::field::{self, FieldError, OrientationField};
 use super::grid::Grid;
 use super::mirror::{Plan, images};
@@ -19,8 +19,7 @@ use super::sizes::{self, SizesError};
 use super::wish::WishError;
 use crate::measure::Seam;
 use crate::mesh::{
-    FaceMap, HalfedgeId, HalfedgeMap, PolygonMesh, PolygonMeshError, TriangleMesh, VertexId,
-    VertexMap,
+    FaceMap, HalfedgeMap, PolygonMesh, PolygonMeshError, TriangleMesh, VertexId, VertexMap,
 };
 use crate::mirror::Doubled;
 use crate::progress::{Cancelled, Progress};
@@ -58,6 +57,8 @@ impl Settings {
 #[derive(Clone, Copy, Debug)]
 pub struct Guides<'a> {
     /// Edges that are lines whatever their angle, on both sides of each.
+    pub lines: &'a HalfedgeMap<bool>,
+    /// Those of them that somebody marked: they stay lines where sharp edges are not clear.
     pub marked: &'a HalfedgeMap<bool>,
     /// That the surface is its own image in a plane, and the quads shall be.
     pub mirror: Option<&'a Doubled>,
@@ -175,7 +176,7 @@ fn is_near(n_quads: usize, n_wanted: usize) -> bool {
 
 /// Makes a closed mesh of quads whose edges follow the shape of a surface of genus 0.
 ///
-/// Edges lie along the surface's sharp edges and along those that are marked, on both sides of each.
+/// Edges lie along the surface's sharp edges where these are clear, and along those that are marked.
 ///
 /// The surface's triangles should be even, and some times as many as the quads. What is returned
 /// is closed, without doubled edges, and has as many quads as wanted within 2 %; whether it can be
@@ -205,9 +206,10 @@ pub fn flow(
         placed,
         seams,
         images,
+        ..
     } = laid;
     let field = dressed.field;
-    let n_lines = dressed.plan.plane.len() + dressed.plan.beside.len();
+    let n_lines = dressed.plans[0].lines().count();
     Ok(Flow {
         mesh: PolygonMesh::from_faces(placed.positions, &grid.quads)?,
         sphere: placed.sphere,
@@ -226,8 +228,8 @@ pub fn flow(
     })
 }
 
-/// The quads with the lines of sharp edges, or without them where that gives none or where too
-/// few are met.
+/// The quads with all lines, or without those of sharp edges, or without any, where that gives none
+/// or where too few sharp ones are met.
 fn search(
     map: &SphereMap,
     guides: Guides<'_>,
@@ -236,34 +238,27 @@ fn search(
 ) -> Result<Laid, Error> {
     let mesh = map.mesh();
     let worn = (&dressed.field, &dressed.wish);
+    let (last, lined) = dressed.plans.split_last().expect("one plan has no lines");
+    let lay_plan = |plan: &Plan, progress: &Progress| {
+        let [part, ends] = [(0.0, 0.9), (0.9, 1.0)].map(|(from, to)| progress.part("", from, to));
+        let whole = whole(mesh, worn, plan, settings, &part)?;
+        lay(map, guides.mirror, (whole, plan), &ends)
+    };
     let mut from = 0.2;
-    if !dressed.plan.beside.is_empty() {
-        from = 0.6;
-        let (part, ends) = (progress.part("", 0.2, 0.57), progress.part("", 0.57, from));
-        let plan = &dressed.plan;
-        let laid = whole(mesh, worn, plan, settings, &part)
-            .and_then(|whole| lay(map, guides.mirror, (whole, plan), &ends));
-        match laid {
-            Ok(laid) => {
-                let is_sharp = |h: &HalfedgeId| dressed.sharp[*h];
-                let on_seams = (laid.seams.iter().map(|seam| seam.line.length())).sum::<f64>();
-                let off = plan.plane.iter();
-                let off = off.map(|line| line.length_of(mesh, |h| !is_sharp(h)));
-                if creases::are_clear(mesh, &dressed.sharp, on_seams - off.sum::<f64>()) {
-                    return Ok(laid);
-                }
-            }
+    for plan in lined {
+        let to = f64::midpoint(from, 1.0);
+        match lay_plan(plan, &progress.part("", from, to)) {
+            Ok(laid) if dressed.are_met(mesh, plan, &laid.is_met) => return Ok(laid),
             // Fewer fixed points leave more ways out.
-            Err(
+            Ok(_)
+            | Err(
                 Error::Quantise(_) | Error::Doubled { .. } | Error::Count { .. } | Error::Uneven,
             ) => {}
             Err(error) => return Err(error),
         }
+        from = to;
     }
-    let plan = planned(guides.mirror, &dressed.field, Vec::new());
-    let (part, ends) = (progress.part("", from, 0.95), progress.part("", 0.95, 1.0));
-    let whole = whole(mesh, worn, &plan, settings, &part)?;
-    lay(map, guides.mirror, (whole, &plan), &ends)
+    lay_plan(last, &progress.part("", from, 1.0))
 }
 
 /// The grid of whole periods, with the ends of lines among its vertices.
@@ -293,6 +288,8 @@ struct Laid {
     whole: Quantised,
     placed: Placed,
     seams: Vec<Seam>,
+    /// Which lines of the plan have a seam.
+    is_met: Vec<bool>,
     images: Option<Vec<VertexId>>,
 }
 
@@ -313,6 +310,7 @@ fn lay(
         Some(_) => Some(images(quads, &seams[..plan.plane.len()]).ok_or(Error::Uneven)?),
         None => None,
     };
+    let is_met = seams.iter().map(Option::is_some).collect();
     let seams: Vec<Seam> = seams.into_iter().flatten().collect();
     if !seams.is_empty() {
         let goals: BTreeMap<u32, DVec3> = seams.iter().flat_map(creases::goals).collect();
@@ -324,6 +322,7 @@ fn lay(
         whole,
         placed,
         seams,
+        is_met,
         images,
     })
 }
@@ -355,6 +354,7 @@ mod tests {
 
     fn guides(marked: &HalfedgeMap<bool>) -> Guides<'_> {
         Guides {
+            lines: marked,
             marked,
             mirror: None,
         }

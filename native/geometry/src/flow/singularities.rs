@@ -9,6 +9,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::f64::consts::PI;
 
+use crate::elementary::sin;
 use crate::flow::field::OrientationField;
 use crate::mesh::{FaceMap, HalfedgeId, TriangleMesh, VertexId, VertexMap};
 
@@ -112,7 +113,7 @@ fn split(mesh: &TriangleMesh, field: &mut OrientationField, sizes: &FaceMap<f64>
 /// Up to `n` regular vertices on a circle round `v`, far from each other, for which `n`
 /// singularities are about an edge of a quad apart.
 fn places(reach: &Reach, field: &OrientationField, (v, n): (VertexId, usize)) -> Vec<VertexId> {
-    let radius = SPLIT_DISTANCE / (2.0 * (PI / n as f64).sin());
+    let radius = SPLIT_DISTANCE / (2.0 * sin(PI / n as f64));
     let size = reach.size_at(v);
     let is_free = |u: &VertexId| field.indices[*u] == 0;
     let free: Vec<VertexId> = reach.seen.iter().copied().filter(is_free).collect();

@@ -9,6 +9,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use glam::DVec2;
 
 use super::place::Cell;
+use crate::elementary::{argument, direction};
 use crate::mesh::{TriangleMesh, VertexMap};
 use crate::sphere_map::SurfacePoint;
 
@@ -92,8 +93,8 @@ fn unfold(sectors: &[Sector], cell: &Cell) -> Option<DVec2> {
         2 => DVec2::new(1.0 - s, 1.0 - t),
         _ => DVec2::new(1.0 - t, s),
     };
-    let share = at.to_angle() / FRAC_PI_2;
-    Some(DVec2::from_angle(sector.from + share * sector.angle) * at.length())
+    let share = argument(at) / FRAC_PI_2;
+    Some(direction(sector.from + share * sector.angle) * at.length())
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@
 use glam::DVec3;
 
 use super::area_vector;
+use crate::elementary::{atan2, cos, hypot, sin};
 use crate::mesh::{Id, TriangleMesh, VertexId, VertexMap};
 use crate::sparse::{Cholesky, NotPositiveDefinite, SymmetricMatrix};
 
@@ -83,9 +84,9 @@ impl Value {
         let normal = self.normal.normalize_or_zero();
         let (u, v) = tangent_frame(normal);
         let [a, b, c] = [self.between(u, u), self.between(u, v), self.between(v, v)];
-        let angle = (2.0 * b).atan2(a - c) / 2.0;
-        let d1 = u * angle.cos() + v * angle.sin();
-        let [mean, half] = [f64::midpoint(a, c), ((a - c) / 2.0).hypot(b)];
+        let angle = atan2(2.0 * b, a - c) / 2.0;
+        let d1 = u * cos(angle) + v * sin(angle);
+        let [mean, half] = [f64::midpoint(a, c), hypot((a - c) / 2.0, b)];
         Curvature {
             k1: mean + half,
             k2: mean - half,

@@ -12,6 +12,7 @@ mod topology;
 
 use glam::DVec3;
 
+use crate::elementary::atan2;
 use crate::mesh::{FaceId, FaceMap, HalfedgeId, TriangleMesh, VertexMap};
 
 pub use curvature::{Curvature, CurvatureField, principal_curvatures};
@@ -112,7 +113,7 @@ pub fn corner_angle(triangle: [DVec3; 3], corner: usize) -> f64 {
 
 /// The angle between two vectors, in 0..=π, exact for small angles too; zero if one is zero.
 pub fn angle_between(a: DVec3, b: DVec3) -> f64 {
-    a.cross(b).length().atan2(a.dot(b))
+    atan2(a.cross(b).length(), a.dot(b))
 }
 
 #[cfg(test)]

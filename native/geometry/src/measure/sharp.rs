@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::face_normals;
+use crate::elementary::cos;
 use crate::mesh::{HalfedgeMap, TriangleMesh};
 
 /// The edges at which the normals of the two faces differ by more than `angle` radians, on both
@@ -12,7 +13,7 @@ use crate::mesh::{HalfedgeMap, TriangleMesh};
 pub fn sharp_edges(mesh: &TriangleMesh, angle: f64) -> HalfedgeMap<bool> {
     let normals = face_normals(mesh);
     let cosine = if angle < std::f64::consts::PI {
-        angle.cos()
+        cos(angle)
     } else {
         f64::NEG_INFINITY
     };

@@ -6,28 +6,27 @@ use serde::Serialize;
 use super::Settings;
 use super::clock::Clock;
 use super::crosses::{self, Cross};
+use super::even::{Marked, even};
 use super::probe::Halves;
 use super::{density, mirror};
 use crate::deform::{self, Deformed, Flowing, Target};
 use crate::embed::{self, Covered};
-use crate::mesh::{HalfedgeMap, PolygonMesh, TriangleMesh, VertexId, VertexMap};
+use crate::mesh::{HalfedgeMap, PolygonMesh, VertexMap};
 use crate::mirror::Doubled;
 use crate::progress::{Cancelled, Progress};
-use crate::sphere::{self, Adaptive};
+use crate::sphere;
 use crate::sphere_map::SphereMap;
 use crate::{flow, pipeline};
-
-/// The even surface has this many triangles at least, so that the field sees the shape.
-const LEAST_TRIANGLES: usize = 16_000;
-/// For few quads that is more than they can show.
-const MOST_TRIANGLES_PER_QUAD: usize = 40;
-/// And at least this many per quad: fewer place quads less well, more only cost time.
-const TRIANGLES_PER_QUAD: f64 = 3.5;
 
 /// Points of the surface farther from the quads than this many edges are missed: a limb is cut off.
 const MOST_MISSED: f64 = 2.0;
 /// Quads farther from the surface than this many edges are a sheet between limbs (round one, 0.25).
 const MOST_ASTRAY: f64 = 1.0;
+
+/// Of the marked edges this share may be lost before other settings are tried: short ones are.
+const MOST_LOST: f64 = 0.1;
+/// They are worth their smoother field if they save this share of the marked edges.
+const WORTH: f64 = 0.05;
 
 /// One in so many quads may be inverted before it is opened; of more, shape is lost.
 const QUADS_PER_KNOT: usize = 50;
@@ -96,6 +95,8 @@ pub struct FlowedPart {
     pub deformed: Deformed,
     /// How many quads the part of the surface that they miss would take, and how many are astray.
     pub n_missed: usize,
+    /// The share of the marked edges that no edge of a quad lies along.
+    pub lost: f64,
     pub sphere: sphere::Report,
     pub flowed: Flowed,
     /// As many crosses of the field as were asked for.
@@ -112,6 +113,12 @@ impl FlowedPart {
         let n_knotted = report.n_knotted.saturating_sub(n_quads / QUADS_PER_KNOT);
         report.n_inverted + self.n_missed + n_knotted
     }
+
+    /// Whether it is to be preferred: fewer quads fail, or as many and more marks are met.
+    fn is_better_than(&self, other: &Self) -> bool {
+        let [own, others] = [self, other].map(FlowedPart::n_failed);
+        own < others || (own == others && self.lost + WORTH < other.lost)
+    }
 }
 
 /// What quads of a part are to be.
@@ -121,8 +128,8 @@ pub struct Asked<'a> {
     pub settings: &'a Settings,
     /// The density at the vertices of the target, where any is asked for.
     pub density: Option<&'a VertexMap<f64>>,
-    /// Whether the user marked edges.
-    pub is_marked: bool,
+    /// The target's edges that the user marked.
+    pub marked: &'a HalfedgeMap<bool>,
     /// The axis across the plane of symmetry, which goes through the origin.
     pub axis: Option<usize>,
 }
@@ -139,11 +146,15 @@ impl Asked<'_> {
 struct Ground<'a> {
     even: SphereMap,
     /// The edges of the even surface that lie along the target's sharp or marked ones.
+    lines: HalfedgeMap<bool>,
+    /// Those that lie along marked ones.
     marked: HalfedgeMap<bool>,
     /// Whose image is whose, where the even surface is its own image.
     doubled: Option<Doubled>,
     sphere: sphere::Report,
     target: &'a Target,
+    /// The marked edges of the target.
+    wanted: Marked,
     asked: Asked<'a>,
     style: flow::Settings,
 }
@@ -161,21 +172,31 @@ pub fn flow_part(
 ) -> Result<Result<FlowedPart, String>, Cancelled> {
     let (n_quads, settings) = (asked.n_quads, asked.settings);
     let part = progress.part("sphere", 0.0, 0.15);
+    let wanted = Marked::new(target.mesh(), asked.marked);
     let even = clock.step("sphere", || {
-        told(even(map, target, (n_quads, settings.seed), &part))
+        told(even(
+            map,
+            (target, &wanted),
+            (n_quads, settings.seed),
+            &part,
+        ))
     })?;
-    let (even, marked, sphere) = match even {
+    let even = match even {
         Ok(even) => even,
         Err(reason) => return Ok(Err(reason)),
     };
     let mut style = settings.flow(n_quads);
-    style.field.alignment *= if asked.is_marked { BESIDE_MARKS } else { 1.0 };
+    if !wanted.is_empty() {
+        style.field.alignment *= BESIDE_MARKS;
+    }
     let ground = Ground {
-        even,
-        marked,
+        even: even.map,
+        lines: even.lines,
+        marked: even.marked,
         doubled: None,
-        sphere,
+        sphere: even.sphere,
         target,
+        wanted,
         asked,
         style,
     };
@@ -200,12 +221,10 @@ fn symmetric(
     let mut symmetric = None;
     let reason = match found.flatten() {
         Ok((even, doubled)) => {
-            let marked = doubled.carried(ground.even.mesh(), &ground.marked);
-            let even = std::mem::replace(&mut ground.even, even);
-            let marked = std::mem::replace(&mut ground.marked, marked);
-            ground.doubled = Some(doubled);
+            let usual = ground.doubled(even, doubled);
             let best = ground.best(clock, &progress.part("", 0.05, 0.6))?;
-            (ground.even, ground.marked, ground.doubled) = (even, marked, None);
+            (ground.even, ground.lines, ground.marked) = usual;
+            ground.doubled = None;
             match best {
                 Ok(best) if best.n_missed == 0 => return Ok(Ok(best)),
                 Ok(best) => {
@@ -228,13 +247,13 @@ fn symmetric(
     })
 }
 
-/// The one of which fewer quads fail, the first of equals; of two reasons the first.
+/// The better one, the first of equals; of two reasons the first.
 fn better(
     best: Result<FlowedPart, String>,
     next: Result<FlowedPart, String>,
 ) -> Result<FlowedPart, String> {
     match (&best, &next) {
-        (Ok(old), Ok(new)) if new.n_failed() >= old.n_failed() => best,
+        (Ok(old), Ok(new)) if !new.is_better_than(old) => best,
         (Ok(_), Err(_)) => best,
         (Err(reason), Err(_)) if !reason.is_empty() => best,
         _ => next,
@@ -242,7 +261,24 @@ fn better(
 }
 
 impl Ground<'_> {
-    /// The first of the attempts in which nothing fails, or the one in which least does.
+    /// Takes an even surface that is its own image in place of the usual one, which it returns.
+    fn doubled(
+        &mut self,
+        even: SphereMap,
+        doubled: Doubled,
+    ) -> (SphereMap, HalfedgeMap<bool>, HalfedgeMap<bool>) {
+        let carried = |lines| doubled.carried(self.even.mesh(), lines);
+        let (lines, marked) = (carried(&self.lines), carried(&self.marked));
+        self.doubled = Some(doubled);
+        (
+            std::mem::replace(&mut self.even, even),
+            std::mem::replace(&mut self.lines, lines),
+            std::mem::replace(&mut self.marked, marked),
+        )
+    }
+
+    /// The first of the attempts in which nothing fails, or the one in which least does; one more is
+    /// worth the marks that it may meet.
     fn best(
         &self,
         clock: &mut Clock,
@@ -255,7 +291,10 @@ impl Ground<'_> {
             let found = self.attempt(attempt, clock, &progress.part("", from, to))?;
             from = to;
             best = better(best, found);
-            if best.as_ref().is_ok_and(|best| best.n_failed() == 0) {
+            let is_done = |best: &FlowedPart| {
+                best.n_failed() == 0 && (best.lost <= MOST_LOST || attempt != Attempt::Usual)
+            };
+            if best.as_ref().is_ok_and(is_done) {
                 break;
             }
         }
@@ -297,9 +336,15 @@ impl Ground<'_> {
             }
             None => deformed,
         };
-        Ok(deformed.map(evened).map(|deformed| FlowedPart {
+        let deformed = match deformed.map(evened) {
+            Ok(deformed) => deformed,
+            Err(reason) => return Ok(Err(reason)),
+        };
+        let marks = (&deformed.mesh, &deformed.features[..]);
+        Ok(Ok(FlowedPart {
             mirrored: self.doubled.as_ref().map(|_| Ok(())),
             n_missed: self.n_missed(&deformed.mesh),
+            lost: self.wanted.lost(marks, progress)?,
             deformed,
             sphere: self.sphere.clone(),
             crosses: crosses::some(self.even.mesh(), &found, self.asked.n_crosses()),
@@ -318,6 +363,7 @@ impl Ground<'_> {
         progress: &Progress<'_>,
     ) -> Result<(flow::Flow, Covered), pipeline::Error> {
         let guides = flow::Guides {
+            lines: &self.lines,
             marked: &self.marked,
             mirror: self.doubled.as_ref(),
         };
@@ -351,50 +397,4 @@ fn told<T>(result: Result<T, pipeline::Error>) -> Result<Result<T, String>, Canc
         Err(pipeline::Error::Cancelled(cancelled)) => Err(cancelled),
         Err(error) => Ok(Err(error.to_string())),
     }
-}
-
-/// An even triangle mesh of the target with its own map to the sphere, and its edges that lie along
-/// the target's sharp or marked ones.
-fn even(
-    map: &SphereMap,
-    target: &Target,
-    (n_quads, seed): (usize, u64),
-    progress: &Progress<'_>,
-) -> Result<(SphereMap, HalfedgeMap<bool>, sphere::Report), pipeline::Error> {
-    let n_faces = LEAST_TRIANGLES
-        .min(MOST_TRIANGLES_PER_QUAD * n_quads)
-        .max((TRIANGLES_PER_QUAD * n_quads as f64) as usize);
-    let settings = sphere::Settings {
-        n_faces,
-        seed,
-        ..sphere::Settings::default()
-    };
-    let part = progress.part("", 0.0, 0.7);
-    let Adaptive { primitive, report } = sphere::adaptive(map, &settings, &part)?;
-    let part = progress.part("", 0.7, 1.0);
-    let settings = deform::Settings::default();
-    let deformed = deform::deform(map, &primitive, target, &settings, &part)?;
-    let mesh = triangles(&deformed.mesh);
-    let marked = either_side(&mesh, &deformed.features);
-    let sphere = VertexMap::from_vec(deformed.sphere);
-    let map = SphereMap::prove(mesh, sphere).map_err(embed::Error::from)?;
-    Ok((map, marked, report))
-}
-
-/// Edges as halfedges on both sides of each.
-fn either_side(mesh: &TriangleMesh, edges: &[[VertexId; 2]]) -> HalfedgeMap<bool> {
-    let is_marked = |h| {
-        let [a, b] = [mesh.origin(h), mesh.target(h)];
-        edges.binary_search(&[a.min(b), a.max(b)]).is_ok()
-    };
-    mesh.halfedge_ids().map(is_marked).collect()
-}
-
-fn triangles(mesh: &PolygonMesh) -> TriangleMesh {
-    let corners = |face: &[VertexId]| [face[0], face[1], face[2]];
-    TriangleMesh::new(
-        mesh.positions().to_vec(),
-        mesh.faces().map(corners).collect(),
-    )
-    .expect("a cover of the sphere by triangles is a closed surface")
 }

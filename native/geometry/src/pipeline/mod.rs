@@ -13,6 +13,7 @@ mod clock;
 mod crosses;
 mod density;
 mod error;
+mod even;
 mod flow;
 mod frame;
 mod join;

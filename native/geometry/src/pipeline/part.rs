@@ -59,6 +59,15 @@ pub struct PartResult {
     pub report: PartReport,
 }
 
+/// What faces are made on: the target, its marked edges, the density asked for there, and the axis
+/// across the plane of symmetry.
+type Ground<'a> = (
+    &'a deform::Target,
+    &'a HalfedgeMap<bool>,
+    Option<&'a VertexMap<f64>>,
+    Option<usize>,
+);
+
 struct Reduction {
     mesh: TriangleMesh,
     reduced: Option<Reduced>,
@@ -89,7 +98,8 @@ impl PartJob<'_> {
         let target = clock.step("deform", || wanted.target((part, &marked), progress))?;
         let stage = progress.part("", 0.5, 1.0);
         let start = (&hierarchy, embedded.map);
-        let made = wanted.make(start, (&target, density.as_ref(), axis), clock, &stage)?;
+        let ground = (&target, &marked, density.as_ref(), axis);
+        let made = wanted.make(start, ground, clock, &stage)?;
         let report = PartReport {
             n_input_faces,
             n_asked_faces: wanted.n_faces,
@@ -119,7 +129,7 @@ impl Wanted<'_> {
     fn make(
         &self,
         (hierarchy, map): (&CollapseHierarchy, SphereMap),
-        (target, density, axis): (&deform::Target, Option<&VertexMap<f64>>, Option<usize>),
+        (target, marked, density, axis): Ground<'_>,
         clock: &mut Clock,
         progress: &Progress<'_>,
     ) -> Result<Made, Error> {
@@ -130,7 +140,7 @@ impl Wanted<'_> {
                 n_quads: self.n_faces,
                 settings: self.settings,
                 density,
-                is_marked: !self.marks.is_empty(),
+                marked,
                 axis,
             };
             match flow_part(&map, target, wanted, clock, &progress.part("", 0.0, 0.9))? {

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Error;
 use super::mirror::Mirror;
+use crate::elementary::powf;
 use crate::{flow, score};
 
 /// The fewest faces that can be asked for: those of a tetrahedron.
@@ -97,7 +98,7 @@ impl Style {
     /// What the flow of so many quads is asked for.
     fn flow(self, n_quads: usize) -> flow::Settings {
         let mut settings = flow::Settings::new(n_quads);
-        settings.field.alignment = 0.75 * 4.0_f64.powf(self.follow_shape);
+        settings.field.alignment = 0.75 * powf(4.0_f64, self.follow_shape);
         settings.sizes.adaptivity = 2.0 * self.adaptivity;
         settings
     }

@@ -7,6 +7,7 @@ use super::Error;
 use super::statistics::{mean, share};
 use super::surface::Surface;
 use super::watched::watched;
+use crate::elementary::atan2;
 use crate::measure::CurvatureField;
 use crate::mesh::{Id, VertexId};
 use crate::progress::{Cancelled, Progress};
@@ -78,7 +79,7 @@ fn alignment(
         let at = field.at(input.triangles[closest.face.index()], closest.weights);
         let [x, y] = [(b - a).dot(at.d1).abs(), (b - a).dot(at.d2).abs()];
         let weight = length * (at.k1 - at.k2).abs() / (at.k1.abs() + at.k2.abs() + least);
-        (x.min(y).atan2(x.max(y)).to_degrees() * weight, weight)
+        (atan2(x.min(y), x.max(y)).to_degrees() * weight, weight)
     };
     let search = |(ends, lengths): (&[[VertexId; 2]], &[f64])| {
         progress.check()?;

@@ -1,6 +1,7 @@
 use glam::{DMat3, DVec3};
 
 use super::*;
+use crate::elementary::{cos, sin};
 use crate::progress::CancelToken;
 use crate::shapes;
 
@@ -35,8 +36,8 @@ fn torus([n_around, n_tube]: [u32; 2], twist: u32) -> PolygonMesh {
             TAU * (i + turn * j) / f64::from(n_around),
             TAU * j / f64::from(n_tube),
         ];
-        let r = 1.0 + 0.4 * b.cos();
-        DVec3::new(r * a.cos(), r * a.sin(), 0.4 * b.sin())
+        let r = 1.0 + 0.4 * cos(b);
+        DVec3::new(r * cos(a), r * sin(a), 0.4 * sin(b))
     });
     let at = |i, j| (i + twist * (j / n_tube)) % n_around * n_tube + j % n_tube;
     let quad = |i, j| [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];

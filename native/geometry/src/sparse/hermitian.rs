@@ -1,12 +1,11 @@
 //! Sparse Hermitian systems: least squares over complex numbers, written as [`DVec2`].
 
 use faer::c64;
-use faer::linalg::solvers::Solve;
-use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
 use faer::sparse::{SparseColMat, Triplet};
 use glam::DVec2;
 
-use super::NotPositiveDefinite;
+use super::factor::Factor;
+use super::{NotPositiveDefinite, Order};
 
 /// A Hermitian matrix under construction; entries at the same place add up.
 #[derive(Clone, Debug)]
@@ -15,16 +14,11 @@ pub struct HermitianMatrix {
     lower: Vec<Triplet<u32, u32, c64>>,
 }
 
-/// A fill-reducing order with the pattern of its factor: the part of the work that matrices with
-/// the same pattern share.
-#[derive(Clone, Debug)]
-pub struct Order(SymbolicLlt<u32>);
-
 /// The factor L of a matrix L Lᴴ.
 #[derive(Clone, Debug)]
 pub struct HermitianCholesky {
     n: usize,
-    factor: Llt<u32, c64>,
+    factor: Factor<c64>,
 }
 
 impl HermitianMatrix {
@@ -71,9 +65,7 @@ impl HermitianMatrix {
     /// When an entry lies outside of the matrix.
     pub fn order(&self) -> Result<Order, NotPositiveDefinite> {
         let refused = NotPositiveDefinite { n: self.n };
-        SymbolicLlt::try_new(self.columns().symbolic(), faer::Side::Lower)
-            .map(Order)
-            .map_err(|_| refused)
+        Order::of(self.columns().as_ref()).map_err(|_| refused)
     }
 
     /// Factorises the matrix in an order found for its pattern.
@@ -91,9 +83,7 @@ impl HermitianMatrix {
             return Err(refused);
         }
         let columns = self.columns();
-        let factor =
-            Llt::try_new_with_symbolic(order.0.clone(), columns.as_ref(), faer::Side::Lower)
-                .map_err(|_| refused)?;
+        let factor = order.factorize(columns.as_ref()).map_err(|_| refused)?;
         Ok(HermitianCholesky { n, factor })
     }
 
@@ -111,12 +101,11 @@ impl HermitianCholesky {
     pub fn solve(&self, values: &mut [DVec2]) {
         assert_eq!(values.len(), self.n, "one value per row");
         let mut column: Vec<c64> = values.iter().map(|z| c64::new(z.x, z.y)).collect();
-        self.factor
-            .solve_in_place(faer::MatMut::from_column_major_slice_mut(
-                &mut column,
-                self.n,
-                1,
-            ));
+        self.factor.solve(faer::MatMut::from_column_major_slice_mut(
+            &mut column,
+            self.n,
+            1,
+        ));
         for (value, z) in values.iter_mut().zip(column) {
             *value = DVec2::new(z.re, z.im);
         }
@@ -126,6 +115,7 @@ impl HermitianCholesky {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elementary::direction;
     use crate::random::Random;
 
     /// `Σ weight |x_i + a_i x_{i+1}|² + shift Σ |x_i|²` over a ring, and its entries in full.
@@ -136,7 +126,7 @@ mod tests {
         for i in 0..n {
             matrix.add(i, i, DVec2::X * shift);
             full[i][i].x += shift;
-            let turn = DVec2::from_angle(6.0 * random.unit());
+            let turn = direction(6.0 * random.unit());
             let row = [(i, DVec2::ONE), ((i + 1) % n, turn)];
             matrix.add_square(&row, 0.5);
             for (i, a) in row {

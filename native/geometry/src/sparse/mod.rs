@@ -1,18 +1,20 @@
 //! Sparse symmetric systems: what least squares on a mesh ends in.
 //!
 //! A [`SymmetricMatrix`] is summed up entry by entry and factorised once as L Lᵀ; the [`Cholesky`]
-//! factor then solves any number of right sides. The work is faer's, on one thread, so the same
-//! input gives the same bits however many threads the caller uses. Matrices that are not positive
+//! factor then solves any number of right sides. The work is faer's, on one thread and
+//! in plain arithmetic, so the same input gives the same bits on every machine. Matrices that are not positive
 //! definite are refused; there is no pivoting and no iteration.
 
+mod factor;
 mod hermitian;
 
-use faer::linalg::solvers::Solve;
-use faer::sparse::{SparseColMat, Triplet, linalg::solvers::Llt};
+use faer::sparse::{SparseColMat, Triplet};
 use glam::DVec3;
 use thiserror::Error;
 
-pub use hermitian::{HermitianCholesky, HermitianMatrix, Order};
+use factor::Factor;
+pub use factor::Order;
+pub use hermitian::{HermitianCholesky, HermitianMatrix};
 
 /// A symmetric matrix under construction; entries at the same place add up.
 #[derive(Clone, Debug)]
@@ -33,7 +35,7 @@ pub struct NotPositiveDefinite {
 #[derive(Clone, Debug)]
 pub struct Cholesky {
     n: usize,
-    factor: Llt<u32, f64>,
+    factor: Factor<f64>,
 }
 
 impl SymmetricMatrix {
@@ -77,7 +79,8 @@ impl SymmetricMatrix {
         }
         let matrix = SparseColMat::try_new_from_triplets(n, n, &self.lower)
             .expect("every entry lies inside of the matrix");
-        let factor = matrix.sp_cholesky(faer::Side::Lower).map_err(|_| refused)?;
+        let order = Order::of(matrix.as_ref()).map_err(|_| refused)?;
+        let factor = order.factorize(matrix.as_ref()).map_err(|_| refused)?;
         Ok(Cholesky { n, factor })
     }
 }
@@ -90,7 +93,7 @@ impl Cholesky {
     pub fn solve(&self, values: &mut [f64]) {
         assert_eq!(values.len(), self.n, "one value per row");
         let columns = faer::MatMut::from_column_major_slice_mut(values, self.n, 1);
-        self.factor.solve_in_place(columns);
+        self.factor.solve(columns);
     }
 
     /// Solves for one vector per row, in place.
@@ -100,7 +103,7 @@ impl Cholesky {
     pub fn solve_vectors(&self, values: &mut [DVec3]) {
         assert_eq!(values.len(), self.n, "one vector per row");
         let mut columns = faer::Mat::from_fn(self.n, 3, |row, axis| values[row][axis]);
-        self.factor.solve_in_place(columns.as_mut());
+        self.factor.solve(columns.as_mut());
         for (row, value) in values.iter_mut().enumerate() {
             *value = DVec3::from_array([0, 1, 2].map(|axis| columns[(row, axis)]));
         }

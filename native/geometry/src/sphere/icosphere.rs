@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::elementary::{acos, cos, sin};
 use crate::mesh::PolygonMesh;
 
 /// The triangles of the icosahedron over the vertices of [`corners`].
@@ -80,7 +81,7 @@ fn corners() -> [DVec3; 12] {
         let turn = (i - 1) as f64 + if lower { 0.5 } else { 0.0 };
         let angle = turn * std::f64::consts::TAU / 5.0;
         let z = if lower { -height } else { height };
-        DVec3::new(2.0 * height * angle.cos(), 2.0 * height * angle.sin(), z)
+        DVec3::new(2.0 * height * cos(angle), 2.0 * height * sin(angle), z)
     };
     std::array::from_fn(|i| match i {
         0 => DVec3::Z,
@@ -92,9 +93,9 @@ fn corners() -> [DVec3; 12] {
 /// The point with these whole-number weights between the corners of a face of the icosahedron.
 fn bent(corners: [DVec3; 3], weights: [u32; 3]) -> DVec3 {
     // The angle of an edge of the icosahedron.
-    let angle = 0.2f64.sqrt().acos();
+    let angle = acos(0.2f64.sqrt());
     let total = f64::from(weights.iter().sum::<u32>());
-    let bend = |w: u32| (angle * f64::from(w) / total).sin();
+    let bend = |w: u32| sin(angle * f64::from(w) / total);
     let [a, b, c] = corners;
     let [u, v, w] = weights.map(bend);
     (a * u + b * v + c * w).normalize_or(DVec3::Z)

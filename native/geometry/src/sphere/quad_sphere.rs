@@ -5,6 +5,7 @@ use std::f64::consts::FRAC_PI_4;
 
 use glam::DVec3;
 
+use crate::elementary::tan;
 use crate::mesh::PolygonMesh;
 
 /// Builds the quad sphere with `a` × `b` × `c` divisions along x, y and z: 2 (ab + bc + ca) quads,
@@ -89,7 +90,7 @@ impl Numbering {
 fn on_sphere(place: [u32; 3], counts: [u32; 3]) -> DVec3 {
     let coordinate = |i: usize| {
         let share = 2.0 * f64::from(place[i]) / f64::from(counts[i]) - 1.0;
-        (FRAC_PI_4 * share).tan()
+        tan(FRAC_PI_4 * share)
     };
     DVec3::new(coordinate(0), coordinate(1), coordinate(2)).normalize_or(DVec3::Z)
 }

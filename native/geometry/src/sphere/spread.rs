@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
+use crate::elementary::{cos, ln_1p, sin, sin_cos, tan};
 use crate::mesh::{FaceId, PolygonMesh, VertexId};
 use crate::progress::{Cancelled, Progress};
 use crate::random::Random;
@@ -72,7 +73,7 @@ pub fn spread(
 fn any_rotation(random: &mut Random) -> DQuat {
     let [u, v, w] = [random.unit(), random.unit() * TAU, random.unit() * TAU];
     let [a, b] = [(1.0 - u).sqrt(), u.sqrt()];
-    DQuat::from_xyzw(a * v.sin(), a * v.cos(), b * w.sin(), b * w.cos())
+    DQuat::from_xyzw(a * sin(v), a * cos(v), b * sin(w), b * cos(w))
 }
 
 /// Judges how a turned primitive lies on the surface, by some of its faces.
@@ -95,7 +96,7 @@ impl<'a> Judge<'a> {
             (b - a).cross(c - a).length()
         };
         let area = 0.5 * mesh.face_ids().map(double_area).sum::<f64>();
-        let regular = |n: usize| 0.25 * n as f64 / (PI / n as f64).tan();
+        let regular = |n: usize| 0.25 * n as f64 / tan(PI / n as f64);
         let wanted: f64 = primitive.faces().map(|face| regular(face.len())).sum();
         let stride = primitive.n_faces().div_ceil(N_JUDGED);
         Self {
@@ -117,7 +118,7 @@ impl<'a> Judge<'a> {
                 .map(|v| self.map.surface_position(place(v)))
                 .collect();
             let n = corners.len();
-            let (sin, cos) = (PI * (1.0 - 2.0 / n as f64)).sin_cos();
+            let (sin, cos) = sin_cos(PI * (1.0 - 2.0 / n as f64));
             for (i, &corner) in corners.iter().enumerate() {
                 let next = corners[(i + 1) % n] - corner;
                 let prev = corners[(i + n - 1) % n] - corner;
@@ -125,7 +126,7 @@ impl<'a> Judge<'a> {
                 let dirichlet = (next.length_squared() + across.length_squared()) / self.scale;
                 // A flat corner counts as one of a thousandth of its area.
                 let ratio = (next.cross(across).length() / self.scale).max(1e-3);
-                sum += (dirichlet * (1.0 + ratio.powi(-2))).ln_1p() / n as f64;
+                sum += ln_1p(dirichlet * (1.0 + ratio.powi(-2))) / n as f64;
             }
         }
         sum / self.faces.len() as f64
@@ -135,6 +136,7 @@ impl<'a> Judge<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elementary::ln;
     use crate::mesh::VertexMap;
     use crate::shapes;
     use crate::sphere::{icosphere, quad_sphere};
@@ -170,7 +172,7 @@ mod tests {
         let primitive = icosphere(6);
         let distortion = Judge::new(&map, &primitive).distortion(DQuat::IDENTITY);
         assert!(
-            (5f64.ln()..5f64.ln() + 0.03).contains(&distortion),
+            (ln(5f64)..ln(5f64) + 0.03).contains(&distortion),
             "{distortion}"
         );
     }

@@ -17,6 +17,7 @@ use rayon::prelude::*;
 use robust::{Coord3D, orient3d};
 use thiserror::Error;
 
+use crate::elementary::atan2;
 use crate::mesh::{FaceId, Id, TriangleMesh, VertexId, VertexMap};
 pub use cover::{NotACover, check_cover, is_unfolded};
 use locate::HintGrid;
@@ -220,7 +221,10 @@ fn degree_of(triangles: impl Iterator<Item = [DVec3; 3]>) -> i64 {
 
 /// The signed solid angle of a spherical triangle (Van Oosterom & Strackee 1983).
 pub fn solid_angle(a: DVec3, b: DVec3, c: DVec3) -> f64 {
-    2.0 * triple_product(a, b, c).atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
+    2.0 * atan2(
+        triple_product(a, b, c),
+        1.0 + a.dot(b) + b.dot(c) + c.dot(a),
+    )
 }
 
 #[cfg(test)]

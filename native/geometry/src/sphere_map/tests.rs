@@ -1,6 +1,7 @@
 use glam::DVec3;
 
 use super::*;
+use crate::elementary::{cos, sin};
 use crate::mesh::Id;
 
 fn octahedron() -> (TriangleMesh, VertexMap<DVec3>) {
@@ -39,7 +40,7 @@ fn every_direction_is_found_where_it_is() {
     let map = SphereMap::prove(mesh, sphere).unwrap();
     for i in 0..500 {
         let t = f64::from(i);
-        let direction = DVec3::new((t * 0.7).sin(), (t * 1.3).cos(), (t * 2.1).sin() * 0.8);
+        let direction = DVec3::new(sin(t * 0.7), cos(t * 1.3), sin(t * 2.1) * 0.8);
         let Some(direction) = direction.try_normalize() else {
             continue;
         };

@@ -113,6 +113,7 @@ fn closest_weights([ab, ac]: [DVec3; 2], ap: DVec3, bp: DVec3, cp: DVec3) -> ([f
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elementary::{cos, sin};
     use crate::mesh::{TriangleMesh, VertexMap};
     use crate::shapes;
 
@@ -126,7 +127,7 @@ mod tests {
 
     fn direction(i: u32) -> DVec3 {
         let t = f64::from(i);
-        DVec3::new((t * 0.7).sin(), (t * 1.3).cos(), (t * 2.1).sin()).normalize_or(DVec3::X)
+        DVec3::new(sin(t * 0.7), cos(t * 1.3), sin(t * 2.1)).normalize_or(DVec3::X)
     }
 
     #[test]

@@ -5,6 +5,7 @@ pub mod conformance;
 pub mod edits;
 
 use glam::{DMat3, DVec3};
+use orbflow_geometry::elementary::{cos, exp, sin, sin_cos};
 use orbflow_geometry::mesh::{PolygonMesh, TriangleMesh, VertexId};
 use orbflow_geometry::random::Random;
 
@@ -50,10 +51,7 @@ pub fn blob(seed: u64, n: u32) -> TriangleMesh {
     let waves: Vec<(DVec3, DVec3)> = (0..5).map(|_| (vector() * 4.0, vector() * 3.0)).collect();
     mapped_cube(n, |p| {
         let s = p.normalize_or(DVec3::Z);
-        let bumps: f64 = waves
-            .iter()
-            .map(|(k, phase)| (k.dot(s) + phase.x).sin())
-            .sum();
+        let bumps: f64 = waves.iter().map(|(k, phase)| sin(k.dot(s) + phase.x)).sum();
         s * (1.0 + 0.09 * bumps)
     })
 }
@@ -75,7 +73,7 @@ pub fn limbs(seed: u64, n: u32) -> TriangleMesh {
         let s = p.normalize_or(DVec3::Z);
         let mut radius = 1.0;
         for (axis, length) in axes.iter().zip(lengths) {
-            radius += length * (-(1.0 - axis.dot(s)) * 14.0).exp();
+            radius += length * exp(-(1.0 - axis.dot(s)) * 14.0);
         }
         let q = s * radius;
         DMat3::from_rotation_z(bend * q.length()) * DMat3::from_rotation_x(bend * q.z) * q
@@ -145,9 +143,9 @@ pub fn mapped_cube(n: u32, map: impl Fn(DVec3) -> DVec3) -> TriangleMesh {
 pub fn torus(n: u32, m: u32) -> TriangleMesh {
     let angle = |i: u32, n: u32| f64::from(i) / f64::from(n) * std::f64::consts::TAU;
     let point = |i: u32, j: u32| {
-        let (s, c) = angle(i, n).sin_cos();
-        let radius = 1.0 + 0.4 * angle(j, m).cos();
-        DVec3::new(c * radius, s * radius, 0.4 * angle(j, m).sin())
+        let (s, c) = sin_cos(angle(i, n));
+        let radius = 1.0 + 0.4 * cos(angle(j, m));
+        DVec3::new(c * radius, s * radius, 0.4 * sin(angle(j, m)))
     };
     let positions = (0..n)
         .flat_map(|i| (0..m).map(move |j| point(i, j)))

@@ -3,6 +3,7 @@
 //! Training asks for medians of energy and folds, every interval. A [`report`] says everything, with
 //! the solver and the radial projection beside it, for shapes trained on and shapes never seen.
 
+mod exhibit;
 pub mod outcome;
 pub mod rebuilt;
 pub mod report;

@@ -24,9 +24,9 @@ use crate::thesis::{self, Example, Moved, Thesis, ThesisError};
 
 /// What is evaluated.
 pub struct Subject {
-    network: Network,
+    pub(super) network: Network,
     predictor: NetworkPredictor,
-    levels: Vec<usize>,
+    pub(super) levels: Vec<usize>,
     thesis: Option<Thesis>,
 }
 
@@ -214,19 +214,8 @@ impl Subject {
     }
 
     fn whole(&self, mesh: &TriangleMesh) -> Result<Whole, OutcomeError> {
-        let settings = decimate::Settings {
-            n_faces: WHOLE_FACES,
-        };
-        let mesh = simplify(
-            &refined(mesh.clone(), WHOLE_FACES),
-            &settings,
-            &Progress::none(),
-        )?
-        .mesh;
-        let n_vertices = mesh.n_vertices();
-        let faces: Vec<_> = mesh.faces().iter().map(|f| f.map(|v| v.0)).collect();
-        let mesh = PolygonMesh::from_faces(mesh.positions().to_vec(), &faces)
-            .expect("a triangle mesh is a polygon mesh");
+        let mesh = finest(mesh)?;
+        let n_vertices = mesh.positions().len();
         let (solver, _) = finished(&mesh, &Solver::default())?;
         let (brisk, _) = finished(&mesh, &Solver::BRISK)?;
         let (network, gave_up) = finished(&mesh, &self.predictor)?;
@@ -238,6 +227,24 @@ impl Subject {
             gave_up,
         })
     }
+}
+
+/// The mesh that is finished, at its number of faces.
+pub(super) fn finest(mesh: &TriangleMesh) -> Result<PolygonMesh, OutcomeError> {
+    let settings = decimate::Settings {
+        n_faces: WHOLE_FACES,
+    };
+    let mesh = refined(mesh.clone(), WHOLE_FACES);
+    Ok(polygons(
+        &simplify(&mesh, &settings, &Progress::none())?.mesh,
+    ))
+}
+
+/// The same mesh, as files have it.
+pub(super) fn polygons(mesh: &TriangleMesh) -> PolygonMesh {
+    let faces: Vec<_> = mesh.faces().iter().map(|f| f.map(|v| v.0)).collect();
+    PolygonMesh::from_faces(mesh.positions().to_vec(), &faces)
+        .expect("a triangle mesh is a polygon mesh")
 }
 
 /// How good directions of any length are.

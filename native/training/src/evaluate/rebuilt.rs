@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 use orbflow_geometry::measure::area_vector;
-use orbflow_geometry::mesh::{Id, TriangleMesh, bounds};
+use orbflow_geometry::mesh::{Id, PolygonMesh, TriangleMesh, bounds};
 use orbflow_geometry::nearest::Bvh;
 use orbflow_geometry::random::Random;
 use orbflow_geometry::sphere::icosphere;
@@ -30,16 +30,11 @@ pub struct Rebuilt {
 impl Rebuilt {
     /// Rebuilds a mesh from points of the sphere for its vertices, and compares.
     pub fn new(mesh: &TriangleMesh, sphere: &[DVec3]) -> Self {
-        let ball = icosphere(FREQUENCY);
-        let weights = weights_of_faces(mesh, sphere);
-        let carried: Vec<DVec3> = ball
-            .positions()
-            .iter()
-            .map(|&p| carry(p, mesh, &weights))
-            .collect();
-        let rebuilt: Vec<[DVec3; 3]> = ball
+        let carried = carried(mesh, sphere);
+        let points = carried.positions();
+        let rebuilt: Vec<[DVec3; 3]> = carried
             .faces()
-            .map(|f| [f[0], f[1], f[2]].map(|v| carried[v.index()]))
+            .map(|f| [f[0], f[1], f[2]].map(|v| points[v.index()]))
             .collect();
         Self::of(&rebuilt, mesh)
     }
@@ -63,6 +58,19 @@ impl Rebuilt {
             f1_pct: [f1(0), f1(1)],
         }
     }
+}
+
+/// The sphere of even points that shapes are rebuilt from.
+pub fn ball() -> PolygonMesh {
+    icosphere(FREQUENCY)
+}
+
+/// This sphere carried to a mesh, whose vertices have these points of the sphere.
+pub fn carried(mesh: &TriangleMesh, sphere: &[DVec3]) -> PolygonMesh {
+    let (ball, weights) = (ball(), weights_of_faces(mesh, sphere));
+    let points = ball.positions().iter();
+    let carried = points.map(|&p| carry(p, mesh, &weights)).collect();
+    ball.with_positions(carried)
 }
 
 /// For each face the weights of its corners, as a map from points of the sphere; none where the face
@@ -133,14 +141,14 @@ mod tests {
     use super::*;
     use crate::shapes::march;
 
-    fn ball() -> TriangleMesh {
+    fn shape() -> TriangleMesh {
         let ball = march(|p| p.length() - 0.8, 1.0, 16);
         TriangleMesh::new(ball.positions, ball.faces).expect("a ball is closed")
     }
 
     #[test]
     fn a_ball_comes_back_from_its_own_directions() {
-        let mesh = ball();
+        let mesh = shape();
         let sphere: Vec<DVec3> = mesh
             .positions()
             .iter()
@@ -154,7 +162,7 @@ mod tests {
 
     #[test]
     fn half_a_ball_is_precise_but_misses_the_other_half() {
-        let mesh = ball();
+        let mesh = shape();
         let above = |p: &DVec3| p.with_z(p.z.max(0.01)).normalize_or_zero();
         let sphere: Vec<DVec3> = mesh.positions().iter().map(above).collect();
         let rebuilt = Rebuilt::new(&mesh, &sphere);

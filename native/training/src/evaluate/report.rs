@@ -139,6 +139,12 @@ impl<'a> Asked<'a> {
         })
     }
 
+    /// Its name as part of a file's name: letters, digits and underscores.
+    pub fn file_stem(&self) -> String {
+        let name = self.which.name();
+        name.replace(|c: char| !c.is_ascii_alphanumeric(), "_")
+    }
+
     fn measure(&self, subject: &Subject, finish: bool) -> Result<Measured, SetError> {
         let shape = self.set.read(self.which)?;
         let finish = finish && self.side != Side::Train;

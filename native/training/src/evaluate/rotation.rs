@@ -1,6 +1,7 @@
 //! The rotation that brings points nearest to others: what two maps may differ by and be equal.
 
 use glam::{DMat3, DVec3};
+use orbflow_geometry::measure::angle_between;
 use orbflow_network::frame::eigenvectors;
 
 /// The rotation that brings `from` nearest to `to` in the mean square (kabsch1976rotation).
@@ -22,7 +23,7 @@ pub fn angles_between(from: &[DVec3], to: &[DVec3]) -> Vec<f64> {
     let rotation = best_rotation(from, to);
     let pairs = from.iter().zip(to);
     let mut angles: Vec<f64> = pairs
-        .map(|(&p, &q)| (rotation * p).angle_between(q).to_degrees())
+        .map(|(&p, &q)| angle_between(rotation * p, q).to_degrees())
         .collect();
     angles.sort_by(f64::total_cmp);
     angles

@@ -1,6 +1,7 @@
 //! Random solids as functions that are negative inside.
 
 use glam::{DMat3, DVec3};
+use orbflow_geometry::elementary::{exp, exp2, ln, powf, sin_cos};
 use orbflow_geometry::random::Random;
 
 /// The share of solids without limbs.
@@ -56,9 +57,9 @@ impl Solid {
         let sum: f64 = self
             .pieces
             .iter()
-            .map(|piece| (-piece.at(p) / self.blend).exp())
+            .map(|piece| exp(-piece.at(p) / self.blend))
             .sum();
-        -self.blend * sum.max(f64::MIN_POSITIVE).ln()
+        -self.blend * ln(sum.max(f64::MIN_POSITIVE))
     }
 }
 
@@ -80,8 +81,8 @@ impl Piece {
                 power,
             } => {
                 let q = (frame.transpose() * (p - *centre)).abs() / *axes;
-                let sum = q.x.powf(*power) + q.y.powf(*power) + q.z.powf(*power);
-                (sum.powf(1.0 / power) - 1.0) * axes.min_element()
+                let sum = powf(q.x, *power) + powf(q.y, *power) + powf(q.z, *power);
+                (powf(sum, 1.0 / power) - 1.0) * axes.min_element()
             }
         }
     }
@@ -137,7 +138,7 @@ fn body(centre: DVec3, most: f64, random: &mut Random) -> Piece {
         centre,
         frame: turn(random),
         axes,
-        power: between(random, 1.0, 3.0).exp2(),
+        power: exp2(between(random, 1.0, 3.0)),
     }
 }
 
@@ -148,7 +149,7 @@ fn between(random: &mut Random, low: f64, high: f64) -> f64 {
 /// A uniform direction: heights on a sphere are uniform.
 fn direction(random: &mut Random) -> DVec3 {
     let z = between(random, -1.0, 1.0);
-    let (s, c) = (random.unit() * std::f64::consts::TAU).sin_cos();
+    let (s, c) = sin_cos(random.unit() * std::f64::consts::TAU);
     let radius = (1.0 - z * z).max(0.0).sqrt();
     DVec3::new(radius * c, radius * s, z)
 }

@@ -17,6 +17,7 @@ mod turn;
 
 use glam::DVec2;
 
+use crate::elementary::angle_to;
 use crate::mesh::{FaceId, HalfedgeId, HalfedgeMap, Id, TriangleMesh, VertexId, VertexMap};
 
 pub use chains::{Chains, Tie};
@@ -169,7 +170,7 @@ impl Complex {
 
     /// The angle of the corner that a halfedge leaves.
     pub fn angle(&self, h: HalfedgeId) -> f64 {
-        self.start[h].angle_to(-self.start[h.prev()])
+        angle_to(self.start[h], -self.start[h.prev()])
     }
 
     /// Turns the frame of a face by −`turns` quarter turns: its vectors turn by `turns`.

@@ -71,6 +71,7 @@ fn quads_of(mesh: TriangleMesh) -> Flow {
     let map = SphereMap::prove(mesh, sphere).unwrap();
     let marked = HalfedgeMap::filled(3 * map.mesh().n_faces(), false);
     let guides = Guides {
+        lines: &marked,
         marked: &marked,
         mirror: None,
     };

@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use crate::elementary::angle_to;
 use crate::mesh::{FaceId, HalfedgeId, HalfedgeMap, TriangleMesh};
 
 /// The triangles of a closed mesh in the plane, each in a chart of its own.
@@ -38,7 +39,7 @@ impl Charts {
 
     /// The angle of the corner that a halfedge leaves.
     pub fn angle(&self, h: HalfedgeId) -> f64 {
-        angle_between(self.edges[h], -self.edges[h.prev()])
+        angle_to(self.edges[h], -self.edges[h.prev()])
     }
 
     /// The cotangent of the angle opposite to a halfedge.
@@ -54,11 +55,6 @@ impl Charts {
         let back = DVec2::new(self.edges[h].x, -self.edges[h].y);
         (-self.edges[twin]).rotate(back).normalize_or(DVec2::X)
     }
-}
-
-/// The angle from one vector to another, in −π..=π; zero if one is zero.
-pub fn angle_between(from: DVec2, to: DVec2) -> f64 {
-    from.perp_dot(to).atan2(from.dot(to))
 }
 
 /// The three halfedges of a face.

@@ -7,6 +7,7 @@ use glam::DVec2;
 use super::charts::Charts;
 use super::shape::{axes, in_chart};
 use super::{OrientationField, turns};
+use crate::elementary::argument;
 use crate::mesh::{HalfedgeId, Id};
 use crate::mirror::{Doubled, mirrored};
 
@@ -30,7 +31,7 @@ pub fn mirror(field: &mut OrientationField, doubled: &Doubled) {
     for &h in doubled.border() {
         let arm = in_chart(field.directions[h.face()], &axes[h.face()]);
         let back = DVec2::new(arm.x, -arm.y);
-        let angle = charts.edge(h).rotate(back).to_angle() / FRAC_PI_2;
+        let angle = argument(charts.edge(h).rotate(back)) / FRAC_PI_2;
         let quarters = angle.round();
         let image: HalfedgeId = doubled.image_of_halfedge(h);
         // The image of an arm is as far behind the edge as the arm is ahead of it.

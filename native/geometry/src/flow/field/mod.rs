@@ -22,6 +22,7 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 use thiserror::Error;
 
+use crate::elementary::{argument, cos, sin};
 use crate::measure::total_area;
 use crate::mesh::{FaceMap, HalfedgeId, HalfedgeMap, TriangleMesh, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
@@ -134,13 +135,13 @@ pub fn orient_along(
     progress.at(0.0)?;
     let pulls = shape::pulls(mesh, (&charts, &axes), settings, along);
     let crosses = smooth::smooth(mesh, &charts, &pulls, progress)?;
-    let angles: FaceMap<f64> = crosses.iter().map(|z| z.to_angle() / 4.0).collect();
+    let angles: FaceMap<f64> = crosses.iter().map(|&z| argument(z) / 4.0).collect();
     let (turns, residuals) = turns::match_crosses(mesh, &charts, &angles);
     let indices = turns::indices(mesh, &charts, &residuals);
     let directions = axes
         .iter()
         .zip(&angles)
-        .map(|(axes, angle)| axes.u * angle.cos() + axes.v * angle.sin())
+        .map(|(axes, &angle)| axes.u * cos(angle) + axes.v * sin(angle))
         .collect();
     let field = OrientationField {
         directions,

@@ -2,11 +2,10 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use glam::DVec2;
-
-use super::charts::{Charts, angle_between};
+use super::charts::Charts;
 use super::shape::{self, Axes, Pull};
 use super::{FieldError, OrientationField, Settings};
+use crate::elementary::{angle_to, direction};
 use crate::mesh::{FaceMap, HalfedgeMap, Id, TriangleMesh};
 use crate::progress::Progress;
 use crate::sparse::SymmetricMatrix;
@@ -84,7 +83,7 @@ fn right_side(
         .map(|face| {
             let Pull { toward, weight } = pulls[face];
             let cross = shape::fourth_power(shape::in_chart(field.directions[face], &axes[face]));
-            weight * angle_between(cross, toward) / (4.0 * FRAC_PI_2)
+            weight * angle_to(cross, toward) / (4.0 * FRAC_PI_2)
         })
         .collect();
     for h in mesh.halfedge_ids() {
@@ -102,7 +101,7 @@ fn turn(
 ) {
     for face in mesh.face_ids() {
         let now = shape::in_chart(field.directions[face], &axes[face]);
-        let turned = DVec2::from_angle(steps[face] * FRAC_PI_2).rotate(now);
+        let turned = direction(steps[face] * FRAC_PI_2).rotate(now);
         field.directions[face] = axes[face].u * turned.x + axes[face].v * turned.y;
     }
     for h in mesh.halfedge_ids() {

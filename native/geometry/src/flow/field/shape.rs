@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use super::charts::{Charts, halfedges};
+use crate::elementary::cos;
 use crate::measure::{area_vector, vertex_normals};
 use crate::mesh::{FaceId, FaceMap, HalfedgeId, HalfedgeMap, TriangleMesh, VertexMap};
 
@@ -60,7 +61,7 @@ pub fn pulls(
     settings: &super::Settings,
     along: &HalfedgeMap<bool>,
 ) -> FaceMap<Pull> {
-    let sharp_cosine = settings.sharp_angle.cos();
+    let sharp_cosine = cos(settings.sharp_angle);
     let areas: FaceMap<f64> = mesh
         .face_ids()
         .map(|face| area_vector(mesh.triangle(face)).length())

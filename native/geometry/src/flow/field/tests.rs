@@ -1,4 +1,5 @@
 use super::*;
+use crate::elementary::{angle_to, argument};
 use crate::flow::complex::Turn;
 use crate::mesh::FaceId;
 use crate::shapes;
@@ -47,7 +48,7 @@ fn turns_compare_the_crosses_of_neighbours() {
             glam::DVec2::new(d.dot(u), -d.dot(v)).rotate(charts.edge(h))
         };
         let across = -in_frame(h).turned(field.turns[h]);
-        worst = worst.max(across.angle_to(in_frame(twin)).abs());
+        worst = worst.max(angle_to(across, in_frame(twin)).abs());
     }
     assert!(worst <= TAU / 8.0 + 1e-9, "{worst}");
 }
@@ -129,7 +130,7 @@ fn crosses_follow_a_singularity_that_was_moved() {
     let axes = axes(&mesh);
     let angles = mesh
         .face_ids()
-        .map(|f| in_chart(field.directions[f], &axes[f]).to_angle());
+        .map(|f| argument(in_chart(field.directions[f], &axes[f])));
     let (_, nearest) = turns::match_crosses(&mesh, &Charts::new(&mesh), &angles.collect());
     for (a, b) in field.residuals.iter().zip(&nearest) {
         let off = (a - b).rem_euclid(1.0);

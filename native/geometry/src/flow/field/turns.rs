@@ -3,6 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::charts::Charts;
+use crate::elementary::argument;
 use crate::mesh::{FaceMap, HalfedgeMap, TriangleMesh, VertexMap};
 
 /// The turns across all halfedges, and the residuals in quarters, from the angles of the crosses
@@ -22,7 +23,7 @@ pub fn match_crosses(
         let Some(twin) = mesh.twin(h).filter(|twin| h < *twin) else {
             continue;
         };
-        let carry = charts.carry(h, twin).to_angle();
+        let carry = argument(charts.carry(h, twin));
         let between = (angles[twin.face()] - angles[h.face()] - carry) / FRAC_PI_2;
         let quarters = between.round();
         residuals[h] = between - quarters;

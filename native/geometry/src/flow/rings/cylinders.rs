@@ -2,11 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use glam::DVec2;
-
 use super::close::close;
 use super::sight::{Limits, Sights, nears_axis};
 use super::{Cylinder, Reach};
+use crate::elementary::direction;
 use crate::flow::complex::Complex;
 use crate::mesh::HalfedgeId;
 
@@ -22,7 +21,7 @@ pub fn cylinders(complex: &Complex, reach: &Reach) -> Vec<Cylinder> {
         longest: reach.longest,
         n_crossed: reach.n_crossed,
         n_sights: MOST_SIGHTS,
-        cone: DVec2::from_angle(reach.angle),
+        cone: direction(reach.angle),
         aside: reach.aside,
         clear: reach.narrowest,
     };

@@ -5,6 +5,7 @@ use glam::{DVec2, IVec2};
 use super::close::places;
 use super::off_axis;
 use super::sight::{Limits, Sights};
+use crate::elementary::direction;
 use crate::flow::complex::Complex;
 
 /// More edges than this are not crossed.
@@ -29,7 +30,7 @@ pub fn segments(complex: &Complex, longest: f64, off: f64) -> Vec<Segment> {
         longest,
         n_crossed: MOST_CROSSED,
         n_sights: MOST_SIGHTS,
-        cone: DVec2::from_angle(ANGLE),
+        cone: direction(ANGLE),
         aside: off + 1e-6,
         clear: 0.0,
     };

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::elementary::sin_cos;
 use crate::measure::face_normal;
 use crate::mesh::{FaceId, FaceMap, HalfedgeId, TriangleMesh, VertexMap};
 use crate::progress::{Cancelled, Progress};
@@ -48,7 +49,7 @@ fn girth(mesh: &TriangleMesh, face: FaceId, limit: f64) -> f64 {
     let middle = (a + b + c) / 3.0;
     let (x, y) = normal.any_orthonormal_pair();
     let ways = (0..N_WAYS).map(|i| {
-        let (sin, cos) = (f64::from(i) * std::f64::consts::PI / f64::from(N_WAYS)).sin_cos();
+        let (sin, cos) = sin_cos(f64::from(i) * std::f64::consts::PI / f64::from(N_WAYS));
         x * cos + y * sin
     });
     ways.fold(limit, |shortest, across| {

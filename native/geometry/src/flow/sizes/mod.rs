@@ -13,6 +13,7 @@ mod grade;
 
 use thiserror::Error;
 
+use crate::elementary::{hypot, powf};
 use crate::measure::{area_vector, principal_curvatures};
 use crate::mesh::{FaceMap, TriangleMesh, VertexMap};
 use crate::progress::{Cancelled, Progress};
@@ -114,8 +115,8 @@ fn wanted(
         let [least, most] = BENT;
         let curvatures = principal_curvatures(mesh, even)?;
         for (size, curvature) in sizes.as_mut_slice().iter_mut().zip(&curvatures) {
-            let bent = (curvature.k1.hypot(curvature.k2) * even).clamp(least, most);
-            *size *= bent.powf(-0.25 * settings.adaptivity);
+            let bent = (hypot(curvature.k1, curvature.k2) * even).clamp(least, most);
+            *size *= powf(bent, -0.25 * settings.adaptivity);
         }
     }
     if let Some(weights) = &settings.weights {

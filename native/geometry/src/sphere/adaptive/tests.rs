@@ -1,6 +1,7 @@
 use glam::DVec3;
 
 use super::*;
+use crate::measure::corner_angle;
 use crate::mesh::TriangleMesh;
 use crate::progress::CancelToken;
 use crate::shapes;
@@ -31,7 +32,7 @@ fn evenness(map: &SphereMap, primitive: &PolygonMesh) -> [f64; 2] {
         let corners = [0, 1, 2].map(|i| positions[face[i].index()]);
         let side = |i: usize| corners[(i + 1) % 3] - corners[i % 3];
         lengths.extend([0, 1, 2].map(|i| side(i).length()));
-        let angles = [0, 1, 2].map(|i| side(i).angle_between(-side(i + 2)).to_degrees());
+        let angles = [0, 1, 2].map(|i| corner_angle(corners, i).to_degrees());
         smallest.push(angles.into_iter().fold(f64::INFINITY, f64::min));
     }
     let mean = |x: &[f64]| x.iter().sum::<f64>() / x.len() as f64;

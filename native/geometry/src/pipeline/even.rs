@@ -1,0 +1,156 @@
+//! The even surface that flowing quads are found on, and where edges that the user marked are on it.
+
+use glam::DVec3;
+
+use crate::deform::{self, Target};
+use crate::mesh::{HalfedgeId, HalfedgeMap, Id, PolygonMesh, TriangleMesh, VertexId, VertexMap};
+use crate::nearest::Bvh;
+use crate::progress::{Cancelled, Progress};
+use crate::sphere::{self, Adaptive};
+use crate::sphere_map::SphereMap;
+use crate::{embed, pipeline, transfer};
+
+/// The even surface has this many triangles at least, so that the field sees the shape.
+const LEAST_TRIANGLES: usize = 16_000;
+/// For few quads that is more than they can show.
+const MOST_TRIANGLES_PER_QUAD: usize = 40;
+/// And at least this many per quad: fewer place quads less well, more only cost time.
+const TRIANGLES_PER_QUAD: f64 = 3.5;
+
+/// Cosine of the most by which triangles turn when vertices are set onto marked edges: 60°.
+const LEAST_COSINE: f64 = 0.5;
+
+/// The places of the edges of a target that the user marked.
+pub struct Marked(Vec<[DVec3; 2]>);
+
+impl Marked {
+    /// Those of a mesh that are marked, on both sides of each.
+    pub fn new(mesh: &TriangleMesh, marked: &HalfedgeMap<bool>) -> Self {
+        let is_first = |h| mesh.twin(h).is_none_or(|twin| h < twin);
+        let marked = mesh.halfedge_ids().filter(|&h| marked[h] && is_first(h));
+        let places = |h| [mesh.origin(h), mesh.target(h)].map(|v| mesh.position(v));
+        Self(marked.map(places).collect())
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Those of some edges of a mesh that lie along them.
+    pub fn met(
+        &self,
+        (mesh, edges): (&PolygonMesh, &[[VertexId; 2]]),
+        progress: &Progress<'_>,
+    ) -> Result<Vec<[VertexId; 2]>, Cancelled> {
+        let met = transfer::edges(&self.0, mesh, edges, progress)?.into_iter();
+        Ok(met.map(|edge| edge.ends).collect())
+    }
+
+    /// The mesh with the ends of those edges set onto them, where that folds no triangle.
+    fn drawn(
+        &self,
+        mesh: &TriangleMesh,
+        met: &[[VertexId; 2]],
+        progress: &Progress<'_>,
+    ) -> Result<TriangleMesh, Cancelled> {
+        let segments: Vec<_> = self.0.iter().map(|&[a, b]| [a, b, b]).collect();
+        let tree = Bvh::build(&segments, progress)?;
+        let mut positions = mesh.positions().to_vec();
+        for &vertex in met.iter().flatten() {
+            let at = |v: VertexId| positions[v.index()];
+            let place = tree.closest(at(vertex)).position;
+            let keeps = |h: HalfedgeId| {
+                let [a, b] = [mesh.target(h), mesh.origin(h.prev())].map(at);
+                let normal = |p: DVec3| (a - p).cross(b - p);
+                let [now, then] = [at(vertex), place].map(normal);
+                now.dot(then) > LEAST_COSINE * now.length() * then.length()
+            };
+            if mesh.outgoing(vertex).all(keeps) {
+                positions[vertex.index()] = place;
+            }
+        }
+        Ok(mesh.with_positions(positions))
+    }
+
+    /// The share of their length that some edges of a mesh leave out; 0 where nothing is marked.
+    pub fn lost(
+        &self,
+        (mesh, edges): (&PolygonMesh, &[[VertexId; 2]]),
+        progress: &Progress<'_>,
+    ) -> Result<f64, Cancelled> {
+        let length = |places: Vec<[DVec3; 2]>| places.iter().map(|[a, b]| a.distance(*b)).sum();
+        let met = self.met((mesh, edges), progress)?.into_iter();
+        let met: f64 = length(met.map(|ends| ends.map(|v| mesh.position(v))).collect());
+        let all: f64 = length(self.0.clone());
+        Ok(if all > 0.0 {
+            (1.0 - met / all).max(0.0)
+        } else {
+            0.0
+        })
+    }
+}
+
+/// An even triangle mesh of a target.
+pub struct Even {
+    /// It, with its own map to the sphere.
+    pub map: SphereMap,
+    /// Its edges that lie along the target's sharp or marked ones, on both sides of each.
+    pub lines: HalfedgeMap<bool>,
+    /// Those of them that lie along marked ones.
+    pub marked: HalfedgeMap<bool>,
+    pub sphere: sphere::Report,
+}
+
+/// Makes an even triangle mesh for so many quads.
+pub fn even(
+    map: &SphereMap,
+    (target, marked): (&Target, &Marked),
+    (n_quads, seed): (usize, u64),
+    progress: &Progress<'_>,
+) -> Result<Even, pipeline::Error> {
+    let n_faces = LEAST_TRIANGLES
+        .min(MOST_TRIANGLES_PER_QUAD * n_quads)
+        .max((TRIANGLES_PER_QUAD * n_quads as f64) as usize);
+    let settings = sphere::Settings {
+        n_faces,
+        seed,
+        ..sphere::Settings::default()
+    };
+    let part = progress.part("", 0.0, 0.7);
+    let Adaptive { primitive, report } = sphere::adaptive(map, &settings, &part)?;
+    let part = progress.part("", 0.7, 1.0);
+    let settings = deform::Settings::default();
+    let deformed = deform::deform(map, &primitive, target, &settings, &part)?;
+    // A vertex that did not quite arrive must not cut a mark in two.
+    let met = marked.met((&deformed.mesh, &deformed.led), progress)?;
+    let mesh = marked.drawn(&triangles(&deformed.mesh), &met, progress)?;
+    let marked = met;
+    let mut lines = [&deformed.features[..], &marked].concat();
+    lines.sort_unstable();
+    let [lines, marked] = [lines, marked].map(|edges| either_side(&mesh, &edges));
+    let sphere = VertexMap::from_vec(deformed.sphere);
+    Ok(Even {
+        map: SphereMap::prove(mesh, sphere).map_err(embed::Error::from)?,
+        lines,
+        marked,
+        sphere: report,
+    })
+}
+
+/// Edges as halfedges on both sides of each.
+fn either_side(mesh: &TriangleMesh, edges: &[[VertexId; 2]]) -> HalfedgeMap<bool> {
+    let is_marked = |h| {
+        let [a, b] = [mesh.origin(h), mesh.target(h)];
+        edges.binary_search(&[a.min(b), a.max(b)]).is_ok()
+    };
+    mesh.halfedge_ids().map(is_marked).collect()
+}
+
+fn triangles(mesh: &PolygonMesh) -> TriangleMesh {
+    let corners = |face: &[VertexId]| [face[0], face[1], face[2]];
+    TriangleMesh::new(
+        mesh.positions().to_vec(),
+        mesh.faces().map(corners).collect(),
+    )
+    .expect("a cover of the sphere by triangles is a closed surface")
+}
