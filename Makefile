@@ -8,8 +8,8 @@ WHEEL_FLAGS ?= $(if $(filter Linux,$(shell uname)),--zig --compatibility manylin
 # The meshes that benchmarks, training and evaluation read, and the run whose weights ship.
 DATA ?= ../shared/data
 RUN = native/training/runs/2026-11-24
-# What training runs on besides flex, and is tested. Not cuda, whose build fetches a compiler, nor wgpu.
-ENGINES = orbflow-cli/ndarray
+# What training runs on besides flex, and is tested: not cuda, whose build fetches a compiler.
+ENGINES = orbflow-cli/ndarray,orbflow-cli/wgpu
 SOURCES := $(shell find Cargo.toml Cargo.lock native/*/Cargo.toml native/*/src native/network/weights.orbflow native/python -type f 2>/dev/null)
 ADDON := $(shell find addon -type f ! -name "*.pyc")
 
@@ -30,7 +30,8 @@ test-rust: ## Runs the tests of the Rust crates, but for training
 test-training: ## Runs the tests of training; builds burn, which takes minutes
 	cargo test -p orbflow-training -p orbflow-cli --features orbflow-cli/train --locked --quiet
 
-test-engines: ## The same on burn-ndarray too
+test-engines: ## The same on every engine; a driver in software stands in for a GPU
+	scripts/install_libraries.sh vulkan
 	cargo test -p orbflow-training -p orbflow-cli --features $(ENGINES) --locked --quiet
 
 test-python: dist/zip.stamp $(VENV)/wheel.stamp ## Runs the tests over Blender, the wheel and the zip

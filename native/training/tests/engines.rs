@@ -21,10 +21,11 @@ use orbflow_training::shapes::shape;
 fn settings() -> Settings {
     Settings {
         sizes: Sizes {
-            width: 32,
-            ..Sizes::default()
+            width: 16,
+            levels: vec![200, 60, 20],
+            blocks: vec![1, 2, 2],
         },
-        n_steps: 30,
+        n_steps: 20,
         batch: 2,
         ..Settings::default()
     }
@@ -130,7 +131,7 @@ fn check_run(engine: Engine) {
     let off: Vec<f64> = found.iter().zip(&wanted).map(off).collect();
     println!("{engine:?}: losses off by {off:?}");
     let (first, last) = (found[0], found[found.len() - 1]);
-    assert!(last < 0.6 * first, "{first} to {last}");
+    assert!(last < 0.9 * first, "{first} to {last}");
     assert!(off[..10].iter().all(|&off| off < 1e-4), "{off:?}");
     assert!(off.iter().all(|&off| off < GROWN), "{off:?}");
 }
@@ -171,7 +172,7 @@ fn check_change(engines: [Engine; 2]) {
     let cut = begun.run(both, changed.path(), &Progress::new(token.clone(), &stop));
     assert!(matches!(cut, Err(TrainError::Cancelled(_))), "{cut:?}");
     let mut ended = Training::resumed(settings, &second, changed.path()).expect("it can be read");
-    assert_eq!(ended.step(), 10);
+    assert_eq!(ended.step(), 5);
     ended
         .run(both, changed.path(), &Progress::none())
         .expect("nothing stops it");
