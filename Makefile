@@ -8,11 +8,13 @@ WHEEL_FLAGS ?= $(if $(filter Linux,$(shell uname)),--zig --compatibility manylin
 # The meshes that benchmarks, training and evaluation read, and the run whose weights ship.
 DATA ?= ../shared/data
 RUN = native/training/runs/2026-11-24
+# What training runs on besides flex, and is tested. Not cuda, whose build fetches a compiler, nor wgpu.
+ENGINES = orbflow-cli/ndarray
 SOURCES := $(shell find Cargo.toml Cargo.lock native/*/Cargo.toml native/*/src native/network/weights.orbflow native/python -type f 2>/dev/null)
 ADDON := $(shell find addon -type f ! -name "*.pyc")
 
 .SECONDARY: # keep the stamps
-.PHONY: help demo test test-rust test-training test-python wheel zip fixtures pictures bench weights evaluation sets lint format ci clean
+.PHONY: help demo test test-rust test-training test-engines test-python wheel zip fixtures pictures bench weights evaluation sets lint format ci clean
 
 help: ## Prints this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -20,13 +22,16 @@ help: ## Prints this list
 demo: dist/zip.stamp $(VENV)/venv.stamp ## Remeshes a fixture in the real Blender and leaves the result in demo/
 	$(BIN)/python scripts/demo.py demo
 
-test: test-rust test-training test-python ## Runs every test
+test: test-rust test-engines test-python ## Runs every test
 
 test-rust: ## Runs the tests of the Rust crates, but for training
 	cargo test --workspace --exclude orbflow-training --locked --quiet
 
 test-training: ## Runs the tests of training; builds burn, which takes minutes
 	cargo test -p orbflow-training -p orbflow-cli --features orbflow-cli/train --locked --quiet
+
+test-engines: ## The same on burn-ndarray too
+	cargo test -p orbflow-training -p orbflow-cli --features $(ENGINES) --locked --quiet
 
 test-python: dist/zip.stamp $(VENV)/wheel.stamp ## Runs the tests over Blender, the wheel and the zip
 	$(BIN)/python -m pytest
@@ -65,8 +70,8 @@ sets:
 
 lint: $(VENV)/lint.stamp ## Runs every check that is not a test
 	cargo fmt --all --check
-	cargo clippy --workspace --all-targets --features orbflow-cli/train --locked --quiet -- -D warnings
-	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --features orbflow-cli/train --locked --quiet
+	cargo clippy --workspace --all-targets --features $(ENGINES) --locked --quiet -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --features $(ENGINES) --locked --quiet
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/typos

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use orbflow_training::curve::draw_log;
+use orbflow_training::engine::{Engine, EngineError, name_of};
 use orbflow_training::evaluate::{Baselines, baselines};
 use orbflow_training::load::{LoadError, load};
 use orbflow_training::run::{Settings, SettingsError, TrainError, Training};
@@ -45,6 +46,8 @@ pub struct Curve {
 pub enum Device {
     /// The processor
     Cpu,
+    /// The processor, through burn-ndarray, which its makers have deprecated
+    Ndarray,
     /// An NVIDIA GPU
     Cuda,
     /// A GPU through Vulkan, Metal or Direct3D 12
@@ -54,8 +57,8 @@ pub enum Device {
 /// Why training ends early.
 #[derive(Debug, Error)]
 pub enum Error {
-    #[error("this program was built for the device cpu alone, not for {name}")]
-    Device { name: String },
+    #[error(transparent)]
+    Engine(#[from] EngineError),
     #[error("cannot read {path}: {cause}")]
     Read { path: PathBuf, cause: io::Error },
     #[error("{path}: {cause}")]
@@ -95,7 +98,10 @@ struct Shapes<'a> {
 /// Trains until the steps are done or the user stops; the next call goes on from there.
 pub fn train(arguments: &Train, interrupt: &Interrupt) -> Result<(), Error> {
     let token = interrupt.start_work();
-    check_device(arguments.device)?;
+    let device = Engine::from(arguments.device).open()?;
+    if let Some(name) = name_of(&device) {
+        eprintln!("training on {name}");
+    }
     let settings = match &arguments.config {
         Some(path) => read_settings(path, Settings::from_toml)?,
         None => Settings::default(),
@@ -111,7 +117,7 @@ pub fn train(arguments: &Train, interrupt: &Interrupt) -> Result<(), Error> {
     let [training, held_out] = with_bar(token, |progress| load(&set, levels, progress))?;
     let run = &arguments.output;
     fs::create_dir_all(run).map_err(|cause| write_error(run, cause))?;
-    let mut trained = Training::resumed(settings, run)?;
+    let mut trained = Training::resumed(settings, &device, run)?;
     write_shapes(&about, manifest.is_complete, [&training, &held_out], run)?;
     with_bar(token, |progress| {
         trained.run([&training, &held_out], run, progress)
@@ -127,13 +133,13 @@ pub fn curve(arguments: &Curve) -> Result<(), Error> {
     Ok(draw_log(&arguments.run)?)
 }
 
-fn check_device(device: Device) -> Result<(), Error> {
-    match device {
-        Device::Cpu => Ok(()),
-        Device::Cuda | Device::Wgpu => {
-            let value = device.to_possible_value();
-            let name = value.map_or(String::new(), |value| value.get_name().to_owned());
-            Err(Error::Device { name })
+impl From<Device> for Engine {
+    fn from(device: Device) -> Self {
+        match device {
+            Device::Cpu => Self::Flex,
+            Device::Ndarray => Self::NdArray,
+            Device::Cuda => Self::Cuda,
+            Device::Wgpu => Self::Wgpu,
         }
     }
 }

@@ -198,9 +198,27 @@ fn settings_and_devices_that_cannot_be_are_named() {
     }
     let done = run(&["train", &set, "-o", &output, "--device", "cuda"]);
     assert_eq!(done.code, 3);
-    assert!(done.err.contains("not for cuda"), "{}", done.err);
+    assert!(done.err.contains("without the engine cuda"), "{}", done.err);
     assert_eq!(run(&["prepare", "-o", &set]).code, 2);
     assert_eq!(folder.names(), ["c.toml"]);
+}
+
+#[cfg(feature = "wgpu")]
+#[test]
+fn a_gpu_is_named_and_what_it_trained_can_be_had_without_it() {
+    let folder = Folder::new();
+    let set = prepared(&folder);
+    let config = folder.write("c.toml", "n_steps = 2\n");
+    let output = folder.path("run");
+    let weights = |device: &str| {
+        let train = ["train", &set, "--config", &config, "-o", &output];
+        let done = run(&[&train[..], &["--device", device]].concat());
+        assert_eq!(done.code, 0, "{device}: {}", done.err);
+        assert_eq!(done.err.contains("training on "), device == "wgpu");
+        fs::read(format!("{output}/weights.orbflow")).unwrap()
+    };
+    // The second call finds all steps done and reads the checkpoint alone.
+    assert_eq!(weights("wgpu"), weights("cpu"));
 }
 
 #[test]

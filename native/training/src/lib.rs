@@ -9,6 +9,7 @@
 //! what it reached is in `docs/training.md`.
 
 pub mod curve;
+pub mod engine;
 pub mod evaluate;
 mod licence;
 pub mod load;

@@ -193,12 +193,11 @@ struct State {
 }
 
 impl Training {
-    /// A new network, the same for the same seed.
-    pub fn new(settings: Settings) -> Self {
-        let device = Device::flex().autodiff();
-        device.seed(settings.seed);
+    /// A new network, the same for the same seed on every device.
+    pub fn new(settings: Settings, device: &Device) -> Self {
+        let device = device.clone().autodiff();
         Self {
-            network: BurnNetwork::new(&settings.sizes, &device),
+            network: BurnNetwork::seeded(&settings.sizes, settings.seed, &device),
             optimizer: optimizer(),
             settings,
             device,
@@ -206,12 +205,12 @@ impl Training {
         }
     }
 
-    /// Continues from a checkpoint, or begins where there is none.
+    /// Continues from a checkpoint, of whatever device, or begins where there is none.
     ///
     /// # Errors
     /// [`TrainError`], also when the checkpoint was made with other settings.
-    pub fn resumed(settings: Settings, run: &Path) -> Result<Self, TrainError> {
-        let mut training = Self::new(settings);
+    pub fn resumed(settings: Settings, device: &Device, run: &Path) -> Result<Self, TrainError> {
+        let mut training = Self::new(settings, device);
         let folder = run.join("checkpoint");
         let path = folder.join("state.json");
         if !path.exists() {

@@ -49,7 +49,7 @@ fn one_batch_is_learnt_to_the_energy_of_the_solver() {
     };
     let samples = samples(3, &settings.sizes.levels);
     let batch: Vec<&Sample> = samples.iter().collect();
-    let mut training = Training::new(settings);
+    let mut training = Training::new(settings, &Device::flex());
     for _ in 0..1_000 {
         assert!(training.learn(&batch, &[0; 3]).is_finite());
     }
@@ -72,17 +72,17 @@ fn a_resumed_run_equals_an_uninterrupted_one() {
     let samples = samples(3, &settings.sizes.levels);
     let (whole, cut) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let both = [&samples[..2], &samples[2..]];
-    let mut straight = Training::new(settings.clone());
+    let mut straight = Training::new(settings.clone(), &Device::flex());
     straight.run(both, whole.path(), &quiet).unwrap();
 
     // The run is cut in its sixth step: what came after the checkpoint at four is lost.
-    let mut first = Training::new(settings.clone());
+    let mut first = Training::new(settings.clone(), &Device::flex());
     let stop = |_: &str, share: f64| assert!(share < 0.4, "cut");
     let token = orbflow_geometry::progress::CancelToken::new();
     let progress = Progress::new(token, &stop);
     let cut_off = std::panic::AssertUnwindSafe(|| first.run(both, cut.path(), &progress));
     assert!(std::panic::catch_unwind(cut_off).is_err());
-    let mut second = Training::resumed(settings, cut.path()).unwrap();
+    let mut second = Training::resumed(settings, &Device::flex(), cut.path()).unwrap();
     assert_eq!(second.step(), 4);
     second.run(both, cut.path(), &quiet).unwrap();
 
@@ -95,7 +95,7 @@ fn a_resumed_run_equals_an_uninterrupted_one() {
 fn other_settings_do_not_resume() {
     let (settings, folder) = (small(), tempfile::tempdir().unwrap());
     let samples = samples(1, &settings.sizes.levels);
-    let mut training = Training::new(settings.clone());
+    let mut training = Training::new(settings.clone(), &Device::flex());
     training
         .run([&samples, &[]], folder.path(), &Progress::none())
         .unwrap();
@@ -103,7 +103,9 @@ fn other_settings_do_not_resume() {
         rate: 1e-3,
         ..settings
     };
-    let error = Training::resumed(other, folder.path()).err().unwrap();
+    let error = Training::resumed(other, &Device::flex(), folder.path())
+        .err()
+        .unwrap();
     assert!(error.to_string().contains("other settings"), "{error}");
 }
 
@@ -117,7 +119,7 @@ fn a_minute_of_training_helps_on_shapes_never_seen_and_its_weights_can_be_read()
     let samples = samples(10, &settings.sizes.levels);
     let (seen, unseen) = samples.split_at(6);
     let folder = tempfile::tempdir().unwrap();
-    let mut training = Training::new(settings);
+    let mut training = Training::new(settings, &Device::flex());
     let quiet = Progress::none();
     let before = evaluate(&training.network(), unseen).energy;
     training.run([seen, unseen], folder.path(), &quiet).unwrap();

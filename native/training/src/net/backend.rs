@@ -1,4 +1,11 @@
 //! The gated sum as an operation of burn's backends.
+#![cfg_attr(
+    feature = "ndarray",
+    expect(
+        deprecated,
+        reason = "burn-ndarray's makers have deprecated it for burn-flex"
+    )
+)]
 
 use std::sync::Arc;
 
@@ -11,7 +18,12 @@ use orbflow_network::neighbours::Neighbours;
 type FlexTensor = <Flex as burn::backend::BackendTypes>::FloatTensorPrimitive;
 
 /// What a backend must do to run the network fused.
-#[backend_extension(Flex, Autodiff)]
+#[backend_extension(
+    Flex,
+    NdArray: cfg(feature = "ndarray"),
+    Cube: cfg(any(feature = "wgpu", feature = "cuda")),
+    Autodiff
+)]
 pub trait GatedOps: Backend {
     /// See [`kernel::gated_sum`].
     fn gated_sum(rows: FloatTensor<Self>, graph: Arc<Neighbours>) -> FloatTensor<Self>;

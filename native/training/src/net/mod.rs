@@ -3,9 +3,13 @@
 //! Same parts, same order of parameters; a test compares what the two propose.
 
 mod backend;
+#[cfg(any(feature = "wgpu", feature = "cuda"))]
+mod cube;
 pub mod gated;
+#[cfg(feature = "ndarray")]
+mod ndarray;
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use burn::module::{Initializer, Module, ModuleVisitor, Param};
 use burn::nn::{LayerNorm, LayerNormConfig, Linear, LinearConfig};
@@ -80,6 +84,20 @@ impl BurnNetwork {
                 .with_initializer(small)
                 .init(device),
         }
+    }
+
+    /// A network with random weights, the same for the same seed on every device: flex draws them.
+    pub fn seeded(sizes: &Sizes, seed: u64, device: &Device) -> Self {
+        // Flex has one source of random numbers for the whole process.
+        static SOURCE: Mutex<()> = Mutex::new(());
+        let _alone = SOURCE.lock();
+        let flex = Device::flex().autodiff();
+        flex.seed(seed);
+        let network = Self::new(sizes, &flex);
+        // Parameters are drawn when they are first read; those that were not yet read would be
+        // drawn by the other device.
+        network.parameters();
+        network.fork(device)
     }
 
     /// All parameters, as [`orbflow_network::net::Network::new`] takes them.
