@@ -4,6 +4,7 @@ use glam::DVec3;
 use serde::Serialize;
 
 use super::Settings;
+use super::attempt::Attempt;
 use super::clock::Clock;
 use super::crosses::{self, Cross};
 use super::even::{Marked, even};
@@ -53,41 +54,6 @@ pub enum Flowed {
         /// Why not.
         reason: String,
     },
-}
-
-/// Settings of the flow, in the order in which they are tried while quads come out inverted.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Attempt {
-    /// The usual ones.
-    Usual,
-    /// A field that follows the shape less.
-    Smoother,
-    /// A field that follows it more, and other random moves.
-    Closer,
-    /// The same with sizes that differ less.
-    Evener,
-}
-
-impl Attempt {
-    const ALL: [Self; 4] = [Self::Usual, Self::Smoother, Self::Closer, Self::Evener];
-
-    fn settings(self, style: &flow::Settings) -> flow::Settings {
-        let mut settings = style.clone();
-        match self {
-            Self::Usual => {}
-            Self::Smoother => settings.field.alignment /= 3.0,
-            Self::Closer => {
-                settings.field.alignment *= 4.0 / 3.0;
-                settings.search.seed += 1;
-            }
-            Self::Evener => {
-                settings = Self::Closer.settings(style);
-                settings.sizes.adaptivity *= 0.6;
-            }
-        }
-        settings
-    }
 }
 
 /// A part whose quads flow.

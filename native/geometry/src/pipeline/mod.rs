@@ -8,6 +8,7 @@
 //! Every part is a closed component of genus 0 and gets its share of the faces by area. The map is
 //! made on a decimated mesh; the result is laid on the part at full resolution.
 
+mod attempt;
 mod carried;
 mod clock;
 mod crosses;
@@ -28,11 +29,12 @@ mod split;
 mod verbs;
 
 pub use crate::transfer::CarriedEdge;
+pub use attempt::Attempt;
 pub use carried::CarriedReport;
 pub use clock::{Step, peak_memory_mb};
 pub use crosses::Cross;
 pub use error::Error;
-pub use flow::{Attempt, Flowed};
+pub use flow::Flowed;
 pub use mirror::{Mirror, Plane, Through};
 pub use origins::{Origin, Origins};
 pub use report::{Mirrored, PartReport, Reduced, Report};
