@@ -31,9 +31,8 @@ def read(thing: bpy.types.Object, name: str) -> NDArray[np.float32] | None:
     """
     if not name:
         return None
-    for group in groups.read(thing):
-        if group.name == name:
-            return group.weights
+    if name in thing.vertex_groups:
+        return next(group.weights for group in groups.read(thing) if group.name == name)
     if (attribute := thing.data.color_attributes.get(name)) is not None:
         return _brightness(thing.data, attribute)
     offered = ", ".join(each for each, _ in names(thing)) or "none"

@@ -29,9 +29,7 @@ _last: dict[_Print, _Last] = {}
 _N_KEPT = 32
 # At most so many vertices are looked at on every redraw, which takes less than a millisecond.
 _N_LOOKED_AT = 200
-# How many letters of a sentence fit beside the icon in a panel of the usual width, how much of a
-# panel's width there is for no letter, and how wide a letter is, both in pixels.
-_LINE = 36
+# How much of a panel's width there is for no letter of a sentence, and how wide a letter is.
 _MARGIN_PX = 70.0
 _LETTER_PX = 6.0
 # What stands in an empty field.
@@ -223,7 +221,7 @@ def _n_letters(context: bpy.types.Context) -> int:
     return max(10, int((context.region.width / scale - _MARGIN_PX) / _LETTER_PX))
 
 
-def _draw_score(column: bpy.types.UILayout, report: dict[str, Any], n_letters: int = _LINE) -> None:
+def _draw_score(column: bpy.types.UILayout, report: dict[str, Any], n_letters: int) -> None:
     for text in exceptions([report]):
         for i, line in enumerate(textwrap.wrap(text, n_letters)):
             column.label(text=line, icon="BLANK1" if i else "INFO")

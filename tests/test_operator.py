@@ -322,5 +322,5 @@ def test_a_fallback_is_named_in_the_panel_and_the_info_line(open_fixture: Open) 
         def row(self) -> "Column":
             return self
 
-    panel._draw_score(Column(), report)
+    panel._draw_score(Column(), report, 36)
     assert shown[:2] == ["INFO quad sphere instead of flow: no", "BLANK1 whole periods: none"]
