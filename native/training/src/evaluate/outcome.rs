@@ -238,16 +238,8 @@ pub(super) fn finest(mesh: &TriangleMesh) -> Result<PolygonMesh, OutcomeError> {
         n_faces: WHOLE_FACES,
     };
     let mesh = refined(mesh.clone(), WHOLE_FACES);
-    Ok(polygons(
-        &simplify(&mesh, &settings, &Progress::none())?.mesh,
-    ))
-}
-
-/// The same mesh, as files have it.
-pub(super) fn polygons(mesh: &TriangleMesh) -> PolygonMesh {
-    let faces: Vec<_> = mesh.faces().iter().map(|f| f.map(|v| v.0)).collect();
-    PolygonMesh::from_faces(mesh.positions().to_vec(), &faces)
-        .expect("a triangle mesh is a polygon mesh")
+    let simplified = simplify(&mesh, &settings, &Progress::none())?;
+    Ok(PolygonMesh::from(&simplified.mesh))
 }
 
 /// How good directions of any length are.
