@@ -57,6 +57,8 @@ pub use target::Target;
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {
+    /// What faces are evened out to while vertices slide; quads that flow have sizes of their own.
+    pub sizes: Sizes,
     /// How often every vertex of a mesh of triangles slides. Fewer leave uneven faces, more cost
     /// time for little.
     pub n_relaxations: usize,
@@ -77,9 +79,21 @@ pub struct Settings {
     pub squareness: f64,
 }
 
+/// The size that faces are evened out to.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Sizes {
+    /// One for all.
+    #[default]
+    Equal,
+    /// That of the faces around, for primitives that are finer in places.
+    Own,
+}
+
 impl Default for Settings {
     fn default() -> Self {
         Self {
+            sizes: Sizes::Equal,
             n_relaxations: 4,
             n_quad_relaxations: 0,
             n_flow_relaxations: 40,
@@ -191,18 +205,19 @@ pub fn deform(
     slide_and_flip(
         &mut sheet,
         cover.as_mut(),
-        (n, &mut report),
+        (n, settings.sizes, &mut report),
         &progress.part("", 0.0, 0.5),
     )?;
     let part = progress.part("", 0.5, 0.6);
-    let [n_goals, n_pinned] = snap::snap(&mut sheet, cover.as_mut(), target, &part)?;
+    let [n_goals, n_pinned] =
+        snap::snap(&mut sheet, cover.as_mut(), (target, settings.sizes), &part)?;
     (report.n_feature_goals, report.n_feature_vertices) = (n_goals, n_pinned);
     if n_goals > 0 {
         let part = progress.part("", 0.6, 0.7);
         slide_and_flip(
             &mut sheet,
             cover.as_mut(),
-            (n.div_ceil(2), &mut report),
+            (n.div_ceil(2), settings.sizes, &mut report),
             &part,
         )?;
     }
@@ -355,14 +370,14 @@ fn check_primitive(primitive: &PolygonMesh) -> Result<(), Error> {
 fn slide_and_flip(
     sheet: &mut Sheet,
     mut cover: Option<&mut Cover>,
-    (n, report): (usize, &mut Report),
+    (n, sizes, report): (usize, Sizes, &mut Report),
     progress: &Progress,
 ) -> Result<(), Cancelled> {
     for round in 0..n {
         let [from, to] = [round, round + 1].map(|r| r as f64 / n as f64);
         report.n_flips += flips::flip_edges(sheet);
-        report.n_stuck =
-            relax::relax(sheet, cover.as_deref_mut(), 1, &progress.part("", from, to))?;
+        let part = progress.part("", from, to);
+        report.n_stuck = relax::relax(sheet, cover.as_deref_mut(), (1, sizes), &part)?;
     }
     report.n_flips += flips::flip_edges(sheet);
     Ok(())
