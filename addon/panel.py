@@ -206,8 +206,10 @@ def _proposal(embedding: dict[str, Any]) -> list[tuple[str, str]]:
     proposal = embedding["proposal"]
     relaxed = embedding["n_relaxations"] - proposal["n_relaxations"]
     moved, n_vertices = embedding["repair"]["n_moved"], proposal["n_vertices"]
+    weights = embedding["weights"]
     return [
         ("Proposed by", embedding["predictor"]),
+        ("Weights", "shipped" if weights["shipped"] else weights["sum"]),
         ("Folds proposed", f"{proposal['folds_pct']:.1f} %"),
         ("Distortion", f"{proposal['energy']:.2f} → {embedding['energy']:.2f}"),
         ("Vertices repaired", f"{moved:,} of {n_vertices:,}"),

@@ -20,6 +20,7 @@ PROPOSERS = {
     "thesis": "thesis",
     "thesis_target": "thesis, its targets",
     "network": "network",
+    "unswept": "solver, no sweep yet",
     "solver": "solver",
 }
 Figures = dict[str, Any]
@@ -85,9 +86,12 @@ def angles(sides: Figures) -> str:
     for side, report in sides.items():
         overall = report["overall"]
         median, most = overall["angles_deg"]
-        worse = overall["worse_than_radial_pct"]
-        rows.append([SIDES[side], f"{median:.0f}°", f"{most:.0f}°", f"{worse:.1f} %"])
-    return table(["shapes", "median", "90 %", "worse than the radial projection"], rows)
+        worse = (overall[f"worse_than_{other}_pct"] for other in ("radial", "unswept"))
+        rows.append(
+            [SIDES[side], f"{median:.0f}°", f"{most:.0f}°", *(f"{pct:.1f} %" for pct in worse)]
+        )
+    worse = ["worse than the radial projection", "than the solver before any sweep"]
+    return table(["shapes", "median", "90 %", *worse], rows)
 
 
 def whole(sides: Figures) -> str:

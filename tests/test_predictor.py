@@ -1,6 +1,7 @@
 """The network's weights: in Python and in the add-on's preferences."""
 
 import json
+import re
 import struct
 from pathlib import Path
 
@@ -59,6 +60,9 @@ def test_the_network_runs_on_bytes_and_on_a_path(weights: bytes, tmp_path: Path)
     assert len({each.positions.tobytes() for each in results}) == 1
     embedding = results[0].report["embedding"]
     assert (embedding["predictor"], embedding["n_folds"]) == ("network", 0)
+    told = embedding["weights"]
+    assert (told["shipped"], told["provenance"]) == (False, "made by a test")
+    assert re.fullmatch("[0-9a-f]{16}", told["sum"])
 
 
 @pytest.mark.parametrize(
@@ -84,6 +88,9 @@ def test_the_wheel_has_weights_of_its_own_and_tells_what_they_proposed() -> None
     assert proposal["energy"] == pytest.approx(1.64, abs=0.05)
     assert (proposal["n_folds"], repair["n_moved"], proposal["n_relaxations"]) == (0, 0, 0)
     assert embedding["n_relaxations"] > 0
+    assert embedding["weights"]["shipped"]
+    assert min(embedding["times"][f"{stage}_ms"] for stage in ("propose", "relax")) > 0
+    assert orbflow_native.embed(*ball()).report["embedding"]["weights"] is None
 
 
 def test_weights_that_nothing_reads_and_missing_files_are_said(tmp_path: Path) -> None:
@@ -105,6 +112,7 @@ def test_the_add_on_needs_no_file_and_the_panel_tells_what_was_proposed(open_fix
     shown = dict(panel.rows(report))
     proposal = report["embedding"]["proposal"]
     assert shown["Proposed by"] == "network"
+    assert shown["Weights"] == "shipped"
     assert shown["Folds proposed"] == f"{proposal['folds_pct']:.1f} %"
     assert shown["Vertices repaired"].endswith(f" of {proposal['n_vertices']:,}")
     assert shown["Distortion"].startswith(f"{proposal['energy']:.2f} → ")
@@ -136,7 +144,9 @@ def test_the_file_in_the_preferences_is_used_and_wrong_ones_change_nothing(
         assert "bytes, but" in error()
         path.write_bytes(weights)
         assert press.orbflow_remesh(predictor="NETWORK", faces=200) == {"FINISHED"}
-        report = addon("panel").last_report("First")
+        panel = addon("panel")
+        report = panel.last_report("First")
         assert report["embedding"]["predictor"] == "network"
+        assert dict(panel.rows(report))["Weights"] == report["embedding"]["weights"]["sum"]
     finally:
         preferences.weights = ""

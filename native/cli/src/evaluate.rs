@@ -85,7 +85,10 @@ pub fn evaluate(arguments: &Evaluate, interrupt: &Interrupt) -> Result<(), Error
         None => Weights::shipped(),
     };
     let subject = Subject::new(&weights).map_err(|cause| Error::Weights {
-        path: arguments.weights.clone().unwrap_or_default(),
+        path: arguments
+            .weights
+            .clone()
+            .unwrap_or_else(|| "the program's own weights".into()),
         cause,
     })?;
     let set = Set::open(&arguments.set)?;

@@ -24,6 +24,10 @@ fn predict_makes_a_mesh_of_the_proposal_and_tells_what_it_cost() {
         assert!(embedding["proposal"][told].is_number(), "{told}");
     }
     assert!(embedding["repair"]["n_moved"].is_number() && embedding["n_relaxations"].is_number());
+    assert_eq!(embedding["weights"]["shipped"], true);
+    for told in ["propose_ms", "repair_ms", "relax_ms"] {
+        assert!(embedding["times"][told].is_number(), "{told}");
+    }
     assert!(fs::exists(output).unwrap());
 }
 
@@ -59,6 +63,13 @@ fn predict_says_that_a_proposal_was_no_use_and_writes_the_report_alone() {
     let words = "ball.obj: the proposal for part 1 of 1 is beyond repair";
     assert!(refused.err.contains(words), "{}", refused.err);
     assert_eq!(folder.names(), ["bad.orbflow", "ball.obj", "r.json"]);
+    let report: Value = serde_json::from_str(&fs::read_to_string(report).unwrap()).unwrap();
+    let told = &report["embedding"]["weights"];
+    let sum = format!("{:016x}", weights.sum());
+    assert_eq!(
+        (&told["sum"], &told["shipped"]),
+        (&sum.into(), &false.into())
+    );
     // Remesh does it all the same, by the solver.
     let files = ["remesh", &input, &output, "--predictor", "network"];
     let done = run(&[&files[..], &["--weights", &path, "--faces", "200"]].concat());

@@ -49,13 +49,8 @@ mod tests {
         ];
         let places = (1..=4000).map(|i| f64::from(i) / 2017.0);
         let values = places.flat_map(|x| functions.map(|function| function(x)));
-        // FNV-1a.
-        let hash = values
-            .flat_map(f64::to_le_bytes)
-            .fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-                (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-            });
-        assert_eq!(hash, 9_252_986_089_394_379_149);
+        let mixed = values.fold(0u64, |mixed, x| mixed.rotate_left(1) ^ x.to_bits());
+        assert_eq!(mixed, 464_787_552_927_576_916);
     }
 
     #[test]

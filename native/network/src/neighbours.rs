@@ -60,6 +60,11 @@ impl Neighbours {
         &self.of_all[self.starts[vertex] as usize..self.starts[vertex + 1] as usize]
     }
 
+    /// Where the neighbours of each vertex start in all of them, with the end of the last; and all.
+    pub fn table(&self) -> [&[u32]; 2] {
+        [&self.starts, &self.of_all]
+    }
+
     /// Every edge in both directions, as the vertices it leaves and those it reaches.
     pub fn pairs(&self) -> [Vec<i64>; 2] {
         let from = (0..self.n_vertices()).flat_map(|v| self.of(v).iter().map(move |_| v as i64));

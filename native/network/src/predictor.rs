@@ -1,7 +1,7 @@
 //! The network as a predictor of `embed`.
 
 use glam::DVec3;
-use orbflow_geometry::embed::{OffsetPredictor, PredictError, Proposal, Settings};
+use orbflow_geometry::embed::{OffsetPredictor, PredictError, Proposal, Settings, WeightsReport};
 use orbflow_geometry::hierarchy::CollapseHierarchy;
 use orbflow_geometry::mesh::VertexMap;
 use orbflow_geometry::progress::Progress;
@@ -15,6 +15,7 @@ use crate::weights::{ReadWeightsError, Weights};
 pub struct NetworkPredictor {
     network: Network,
     sizes: Sizes,
+    weights: WeightsReport,
 }
 
 impl NetworkPredictor {
@@ -26,6 +27,11 @@ impl NetworkPredictor {
         Ok(Self {
             network: weights.network()?,
             sizes: weights.header.sizes.clone(),
+            weights: WeightsReport {
+                sum: format!("{:016x}", weights.sum()),
+                shipped: weights.is_shipped(),
+                provenance: weights.header.provenance.clone(),
+            },
         })
     }
 }
@@ -40,6 +46,10 @@ impl Default for NetworkPredictor {
 impl OffsetPredictor for NetworkPredictor {
     fn name(&self) -> &'static str {
         "network"
+    }
+
+    fn weights(&self) -> Option<&WeightsReport> {
+        Some(&self.weights)
     }
 
     fn finish(&self) -> Settings {

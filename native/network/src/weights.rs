@@ -25,6 +25,8 @@ const MAGIC: &[u8; 8] = b"ORBFLOWN";
 const VERSION: u32 = 1;
 /// The length of what stands before the header.
 const FRONT: usize = 32;
+/// Where the sum stands in it.
+const SUM_AT: usize = 24;
 /// The most that a header may ask for.
 const MAX_WIDTH: usize = 512;
 const MAX_LEVELS: usize = 8;
@@ -127,11 +129,27 @@ impl Weights {
         Self::from_bytes(SHIPPED).expect("the tests read the same bytes")
     }
 
-    /// The bytes of a weights file, parameters in half precision.
-    pub fn to_bytes(&self) -> Vec<u8> {
+    /// The sum that a file of these weights has, which tells one from another.
+    pub fn sum(&self) -> u64 {
+        let [header, parameters] = self.encoded();
+        fnv(header.iter().chain(&parameters))
+    }
+
+    /// Whether they are those that every build carries.
+    pub fn is_shipped(&self) -> bool {
+        SHIPPED[SUM_AT..FRONT] == self.sum().to_le_bytes()
+    }
+
+    /// Header and parameters as files have them.
+    fn encoded(&self) -> [Vec<u8>; 2] {
         let header = serde_json::to_vec(&self.header).expect("a header is plain numbers and text");
         let halves = self.parameters.iter().map(|&x| f16::from_f32(x));
-        let parameters: Vec<u8> = halves.flat_map(f16::to_le_bytes).collect();
+        [header, halves.flat_map(f16::to_le_bytes).collect()]
+    }
+
+    /// The bytes of a weights file, parameters in half precision.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let [header, parameters] = self.encoded();
         let mut bytes = MAGIC.to_vec();
         bytes.extend(VERSION.to_le_bytes());
         bytes.extend((header.len() as u32).to_le_bytes());
@@ -211,7 +229,7 @@ fn parts(bytes: &[u8]) -> Result<(&[u8], &[u8]), ReadWeightsError> {
     }
     let (header, parameters) = bytes[FRONT..].split_at(n_header as usize);
     let found = fnv(header.iter().chain(parameters));
-    let wanted = number(24, 8);
+    let wanted = number(SUM_AT, 8);
     if found != wanted {
         return Err(ReadWeightsError::Damaged { found, wanted });
     }

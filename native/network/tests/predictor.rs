@@ -164,6 +164,22 @@ fn a_file_gives_the_network_back_in_half_precision() {
 }
 
 #[test]
+fn the_report_tells_which_weights_proposed() {
+    let shape = || collapse_to_tetrahedron(common::blob(1, 6), &Progress::none()).unwrap();
+    let told = |predictor: &NetworkPredictor| check(&shape(), predictor).weights.unwrap();
+    let (own, shipped) = (weights(), told(&NetworkPredictor::default()));
+    let other = told(&predictor(&own));
+    assert_eq!(other.provenance, "random");
+    assert!(shipped.shipped && !other.shipped && shipped.sum != other.sum);
+    // The sum of the file's front, so that a file can be told by its first bytes.
+    let front: [u8; 8] = own.to_bytes()[24..32].try_into().unwrap();
+    assert_eq!(other.sum, format!("{:016x}", u64::from_le_bytes(front)));
+    // The same weights from a file are still the shipped ones.
+    let read = Weights::from_bytes(&Weights::shipped().to_bytes()).unwrap();
+    assert_eq!(told(&predictor(&read)), shipped);
+}
+
+#[test]
 fn wrong_damaged_and_hostile_files_are_refused() {
     let bytes = weights().to_bytes();
     let read = |bytes: &[u8]| Weights::from_bytes(bytes).unwrap_err();

@@ -15,6 +15,7 @@ mod licence;
 pub mod load;
 pub mod loss;
 pub mod net;
+mod optimizer;
 pub mod parts;
 pub mod prepare;
 pub mod run;

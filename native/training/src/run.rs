@@ -4,9 +4,8 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use burn::grad_clipping::GradientClippingConfig;
 use burn::module::Module;
-use burn::optim::{AdamWConfig, GradientsParams, ModuleOptimizer};
+use burn::optim::{GradientsParams, ModuleOptimizer};
 use burn::store::{ModuleRecord, RecordError};
 use burn::tensor::Device;
 use orbflow_geometry::progress::{Cancelled, Progress};
@@ -23,6 +22,7 @@ use crate::curve::draw_log;
 use crate::evaluate::{Figures, evaluate};
 use crate::loss::Faces;
 use crate::net::BurnNetwork;
+use crate::optimizer::optimizer;
 use crate::sample::Sample;
 use crate::schedule::one_cycle;
 
@@ -195,10 +195,11 @@ struct State {
 impl Training {
     /// A new network, the same for the same seed on every device.
     pub fn new(settings: Settings, device: &Device) -> Self {
+        let optimizer = optimizer(device);
         let device = device.clone().autodiff();
         Self {
             network: BurnNetwork::seeded(&settings.sizes, settings.seed, &device),
-            optimizer: optimizer(),
+            optimizer,
             settings,
             device,
             step: 0,
@@ -352,12 +353,6 @@ impl Training {
     fn rate(&self) -> f64 {
         one_cycle(self.step, self.settings.n_steps, self.settings.rate)
     }
-}
-
-fn optimizer() -> ModuleOptimizer {
-    let clipping = GradientClippingConfig::Norm(1.0);
-    let config = AdamWConfig::new().with_weight_decay(1e-2);
-    config.with_grad_clipping(Some(clipping)).init()
 }
 
 /// Adds a line to the log and draws all of it.

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use orbflow_geometry::decimate::{self, CollapseError, collapse_to_tetrahedron, simplify};
-use orbflow_geometry::embed::{self, distortion};
+use orbflow_geometry::embed::{self, OffsetPredictor, distortion};
 use orbflow_geometry::hierarchy::{CollapseHierarchy, HierarchyError};
 use orbflow_geometry::measure::area_vector;
 use orbflow_geometry::mesh::{Id, TriangleMesh, TriangleMeshError, VertexMap};
@@ -134,6 +134,22 @@ impl Sample {
         let (solver, settings) = (embed::Solver::default(), embed::Settings::default());
         let embedded = embed::embed(&hierarchy, &solver, &settings, &quiet)?;
         Ok(embedded.map.sphere().as_slice().to_vec())
+    }
+
+    /// Where the solver puts them before any sweep: each into the kernel of its ring when it comes,
+    /// where it stays.
+    ///
+    /// # Errors
+    /// [`SampleError`].
+    pub fn unswept_sphere(&self) -> Result<Vec<DVec3>, SampleError> {
+        let quiet = Progress::none();
+        let hierarchy = collapse_to_tetrahedron(self.mesh.clone(), &quiet)?;
+        let solver = embed::Solver {
+            finest_swept: 0,
+            ..embed::Solver::default()
+        };
+        let proposed = solver.propose(&hierarchy, &quiet);
+        Ok(proposed.map_err(embed::Error::from)?.sphere.into_vec())
     }
 
     /// The distortion of [`Sample::solver_sphere`].

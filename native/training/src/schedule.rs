@@ -1,7 +1,8 @@
 //! The learning rate of each step: one cycle, up in a straight line and down by a cosine.
 
-use orbflow_geometry::elementary::cos;
 use std::f64::consts::PI;
+
+use orbflow_geometry::elementary::cos;
 
 /// The share of the steps on which the rate rises.
 const RISE: f64 = 0.1;

@@ -19,9 +19,7 @@ use tempfile::TempDir;
 const OPEN: &[u8] = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\n";
 
 fn obj(mesh: &TriangleMesh) -> Vec<u8> {
-    let faces: Vec<_> = mesh.faces().iter().map(|f| f.map(|v| v.0)).collect();
-    let mesh = PolygonMesh::from_faces(mesh.positions().to_vec(), &faces);
-    let file = MeshFile::from(mesh.expect("triangles are polygons"));
+    let file = MeshFile::from(PolygonMesh::from(mesh));
     let mut bytes = Vec::new();
     write(&file, Format::Obj, &mut bytes).expect("memory can be written");
     bytes

@@ -4,15 +4,16 @@
 //! surface point*. From there on every vertex lives twice, in space and on the sphere:
 //!
 //! ```text
-//! place on the map ─▶ relax, snap to sharp edges ─▶ lift onto the full-resolution target ─▶ straddle ─▶ untangle
-//!      locate           slide, flip, pin                  closest point that agrees        least squares   quads
+//! place on the map ─▶ relax, snap to sharp edges ─▶ lift onto the full-resolution target ─▶ straddle ─▶ untangle ─▶ separate
+//!      locate           slide, flip, pin                  closest point that agrees        least squares   quads     crossing faces
 //! ```
 //!
 //! A slide moves the sphere point along; one that would fold the primitive on the sphere is
 //! refused, so the result covers the sphere, and with it the surface, exactly once from beginning
-//! to end. The last three steps move vertices off the map's surface by no more than an edge.
+//! to end. The last four steps move vertices off the map's surface by no more than an edge.
 //!
-//! Not done here: choosing the primitive (`sphere`), and proving that faces do not cross in space.
+//! Not done here: choosing the primitive (`sphere`), and proving that faces do not cross in space
+//! (what still does is counted).
 
 mod cover;
 mod features;
@@ -24,6 +25,7 @@ mod project;
 mod reach;
 mod relax;
 mod route;
+mod separate;
 mod sheet;
 mod sites;
 mod skin;
@@ -131,6 +133,10 @@ pub struct Report {
     pub n_knotted: usize,
     /// How many moves of vertices in space it took to open inverted quads that flow.
     pub n_opened: usize,
+    /// How many pairs of triangles crossed before they were moved apart.
+    pub n_crossing: usize,
+    /// And how many still cross.
+    pub n_crossing_left: usize,
     /// How many quads have a corner that turns the wrong way all the same.
     pub n_inverted: usize,
 }
@@ -220,6 +226,7 @@ pub fn deform(
     if cover.is_none() {
         reach::reach(&mut sheet, (target, Span::CUT_OFF), progress)?;
     }
+    [report.n_crossing, report.n_crossing_left] = separate::separate(&mut sheet, progress)?;
     Ok(Deformed::new(sheet, report))
 }
 
@@ -328,6 +335,7 @@ pub fn deform_flow(
     fit.straddle(&mut sheet, settings.n_flow_straddles, &part)?;
     [report.n_knotted, report.n_opened] = untangle::untangle(&mut sheet, progress)?;
     reach::reach(&mut sheet, (target, Span::LEFT), progress)?;
+    [report.n_crossing, report.n_crossing_left] = separate::separate(&mut sheet, progress)?;
     Ok(Deformed::new(sheet, report))
 }
 

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::sheet::Sheet;
+use super::sheet::{Face, Sheet};
 use super::sites::Site;
 use crate::measure::area_vector;
 use crate::mesh::{FaceId, Id, VertexId, VertexMap};
@@ -46,23 +46,25 @@ impl Skin {
     }
 }
 
-/// The faces cut into triangles, quads along the shorter diagonal.
+/// The faces cut into triangles.
 pub(super) fn triangles(sheet: &Sheet) -> Vec<[VertexId; 3]> {
-    let mut triangles = Vec::with_capacity(2 * sheet.faces().len());
-    for face in sheet.faces() {
-        match *face.corners() {
-            [a, b, c, d] => {
-                let along = |p, q| sheet.position(p).distance_squared(sheet.position(q));
-                if along(a, c) <= along(b, d) {
-                    triangles.extend([[a, b, c], [a, c, d]]);
-                } else {
-                    triangles.extend([[a, b, d], [b, c, d]]);
-                }
-            }
-            ref corners => triangles.push([corners[0], corners[1], corners[2]]),
-        }
-    }
-    triangles
+    let faces = sheet.faces().iter();
+    let at = |v| sheet.position(v);
+    faces.flat_map(|face| cut(face, at)).collect()
+}
+
+/// The triangles of a face, a quad's along its shorter diagonal.
+pub(super) fn cut<F: Fn(VertexId) -> DVec3>(
+    face: &Face,
+    at: F,
+) -> impl Iterator<Item = [VertexId; 3]> + use<F> {
+    let along = |p, q| at(p).distance_squared(at(q));
+    let triangles = match *face.corners() {
+        [a, b, c, d] if along(a, c) <= along(b, d) => [Some([a, b, c]), Some([a, c, d])],
+        [a, b, c, d] => [Some([a, b, d]), Some([b, c, d])],
+        ref corners => [Some([corners[0], corners[1], corners[2]]), None],
+    };
+    triangles.into_iter().flatten()
 }
 
 /// The mean of the normals of the triangles at every vertex, weighted by area.

@@ -55,7 +55,7 @@ pub(super) fn untangle(sheet: &mut Sheet, progress: &Progress) -> Result<[usize;
 }
 
 /// Moves vertices that are not pinned to the middle of their neighbours, some times.
-fn smooth(sheet: &mut Sheet, vertices: &[VertexId]) {
+pub(super) fn smooth(sheet: &mut Sheet, vertices: &[VertexId]) {
     let stars = Stars::new(sheet);
     for _ in 0..N_SMOOTHINGS {
         for &v in vertices {
@@ -103,13 +103,13 @@ pub(super) fn n_inverted(mesh: &PolygonMesh) -> usize {
 }
 
 /// The faces of less than a quality.
-fn worse_than(sheet: &Sheet, quality: f64) -> Vec<FaceId> {
+pub(super) fn worse_than(sheet: &Sheet, quality: f64) -> Vec<FaceId> {
     let ids = sheet.faces().ids();
     ids.filter(|&face| sheet.quality(face) < quality).collect()
 }
 
 /// The corners of faces, each once.
-fn corners(sheet: &Sheet, faces: &[FaceId]) -> Vec<VertexId> {
+pub(super) fn corners(sheet: &Sheet, faces: &[FaceId]) -> Vec<VertexId> {
     let corners = faces.iter().flat_map(|&face| sheet.faces()[face].corners());
     let mut vertices: Vec<_> = corners.copied().collect();
     vertices.sort_unstable();
@@ -118,7 +118,7 @@ fn corners(sheet: &Sheet, faces: &[FaceId]) -> Vec<VertexId> {
 }
 
 /// The vertices and so many rings of faces around them.
-fn grown(sheet: &Sheet, mut vertices: Vec<VertexId>, n_rings: usize) -> Vec<VertexId> {
+pub(super) fn grown(sheet: &Sheet, mut vertices: Vec<VertexId>, n_rings: usize) -> Vec<VertexId> {
     for _ in 0..n_rings {
         let around: Vec<_> = vertices
             .iter()

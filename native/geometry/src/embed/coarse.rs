@@ -5,6 +5,7 @@ use super::growth::{GrowError, Growth};
 use super::partial::Partial;
 use super::proposal::{ProposalReport, unit_vectors};
 use super::rest::Stiffness;
+use super::times::{Times, timed};
 use super::{Error, PredictError, Proposal, Solver, Valid};
 use crate::hierarchy::CollapseHierarchy;
 use crate::mesh::{Id, TriangleMesh, VertexId, VertexMap};
@@ -19,6 +20,7 @@ const MAX_MOVED: f64 = 0.125;
 pub fn grown(
     hierarchy: &CollapseHierarchy,
     proposed: &Proposal,
+    times: &mut Times,
     progress: &Progress,
 ) -> Result<(Valid, ProposalReport), Error> {
     let order = hierarchy.coarse_to_fine();
@@ -30,11 +32,16 @@ pub fn grown(
     let mut valid = Valid::new(sphere, proposed.n_relaxations);
     let mending = progress.part("", 0.0, 0.1);
     let most = MAX_MOVED * order.len() as f64;
-    let is_usable = report.is_valid()
-        || valid.mend(&mesh, report.n_folds, &mending)? && valid.report.n_moved as f64 <= most;
+    let mend = || {
+        let is_mended = report.is_valid() || valid.mend(&mesh, report.n_folds, &mending)?;
+        Ok::<_, Cancelled>(is_mended && valid.report.n_moved as f64 <= most)
+    };
+    let is_usable = timed(&mut times.repair_ms, mend)?;
     let growing = progress.part("", 0.1, 1.0);
-    if !is_usable || !grow(&mut valid, order, hierarchy, &growing)? {
-        valid.fall_back(hierarchy, Solver::BRISK, &growing)?;
+    let mut grow = || grow(&mut valid, order, hierarchy, &growing);
+    if !is_usable || !timed(&mut times.relax_ms, &mut grow)? {
+        let fall_back = || valid.fall_back(hierarchy, Solver::BRISK, &growing);
+        timed(&mut times.repair_ms, fall_back)?;
     }
     Ok((valid, report))
 }

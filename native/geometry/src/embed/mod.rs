@@ -22,6 +22,7 @@ mod rest;
 mod room;
 mod settle;
 mod solver;
+mod times;
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -35,10 +36,12 @@ pub use cover::{CoverError, CoverReport, Covered, cover};
 pub use energy::distortion;
 use energy::try_distortion;
 use finish::finish;
-pub use proposal::ProposalReport;
 use proposal::unit_vectors;
+pub use proposal::{ProposalReport, WeightsReport};
 use rest::Stiffness;
 pub use solver::Solver;
+pub use times::Times;
+use times::timed;
 
 /// Proposes where on the sphere the vertices of a mesh go.
 ///
@@ -46,6 +49,11 @@ pub use solver::Solver;
 pub trait OffsetPredictor: Sync {
     /// The name that reports carry.
     fn name(&self) -> &str;
+
+    /// Which learnt weights it has; none where it has learnt nothing.
+    fn weights(&self) -> Option<&WeightsReport> {
+        None
+    }
 
     /// How its maps are finished, unless the caller wants it otherwise.
     fn finish(&self) -> Settings {
@@ -146,10 +154,14 @@ pub struct Report {
     pub complete: bool,
     /// Who proposed it.
     pub predictor: String,
+    /// With which weights; none where nothing was learnt.
+    pub weights: Option<WeightsReport>,
     /// What was proposed.
     pub proposal: ProposalReport,
     /// What had to be repaired.
     pub repair: RepairReport,
+    /// How long that took.
+    pub times: Times,
 }
 
 /// An embedded mesh.
@@ -207,19 +219,21 @@ fn embed_in_pool(
     progress: &Progress,
 ) -> Result<Embedded, Error> {
     let mesh = hierarchy.mesh();
-    let proposed = predictor.propose(hierarchy, &progress.part("", 0.0, 0.7))?;
+    let mut times = Times::default();
+    let proposing = progress.part("", 0.0, 0.7);
+    let propose = || predictor.propose(hierarchy, &proposing);
+    let proposed = timed(&mut times.propose_ms, propose)?;
     let mending = progress.part("", 0.7, 0.9);
     let (valid, proposal) = if proposed.n_proposed < mesh.n_vertices() {
-        coarse::grown(hierarchy, &proposed, &mending)?
+        coarse::grown(hierarchy, &proposed, &mut times, &mending)?
     } else {
-        mended(hierarchy, &proposed, &mending)?
+        mended(hierarchy, &proposed, &mut times, &mending)?
     };
-    let finish = finish(
-        mesh,
-        valid.sphere,
-        (settings, Stiffness::Shape),
-        &progress.part("", 0.9, 1.0),
-    )?;
+    let finishing = progress.part("", 0.9, 1.0);
+    let how = (settings, Stiffness::Shape);
+    let finish = timed(&mut times.relax_ms, || {
+        finish(mesh, valid.sphere, how, &finishing)
+    })?;
     progress.check()?;
     let map = SphereMap::prove(mesh.clone(), finish.sphere)?;
     progress.check()?;
@@ -232,8 +246,10 @@ fn embed_in_pool(
         n_sweeps: finish.n_sweeps,
         complete: finish.complete,
         predictor: predictor.name().to_owned(),
+        weights: predictor.weights().cloned(),
         proposal,
         repair: valid.report,
+        times,
     };
     Ok(Embedded { map, report })
 }
@@ -242,17 +258,20 @@ fn embed_in_pool(
 fn mended(
     hierarchy: &CollapseHierarchy,
     proposed: &Proposal,
+    times: &mut Times,
     progress: &Progress,
 ) -> Result<(Valid, ProposalReport), Error> {
     let mesh = hierarchy.mesh();
     let sphere = unit_vectors(proposed, mesh.n_vertices());
     let report = ProposalReport::new(mesh, &sphere, proposed.n_relaxations, progress)?;
     let mut valid = Valid::new(sphere, proposed.n_relaxations);
-    if !report.is_valid() && !valid.mend(mesh, report.n_folds, &progress.part("", 0.0, 0.5))? {
-        let whole = progress.part("", 0.5, 1.0);
-        valid.fall_back(hierarchy, Solver::default(), &whole)?;
-    }
-    Ok((valid, report))
+    let (mending, whole) = (progress.part("", 0.0, 0.5), progress.part("", 0.5, 1.0));
+    timed(&mut times.repair_ms, || {
+        if !report.is_valid() && !valid.mend(mesh, report.n_folds, &mending)? {
+            valid.fall_back(hierarchy, Solver::default(), &whole)?;
+        }
+        Ok((valid, report))
+    })
 }
 
 /// Lays a mesh on the sphere by the solver alone, so that areas are kept rather than angles.

@@ -61,6 +61,17 @@ impl ProposalReport {
     }
 }
 
+/// Which learnt weights proposed.
+#[derive(Clone, PartialEq, Eq, Debug, Serialize)]
+pub struct WeightsReport {
+    /// Their check sum, 16 hexadecimal digits: what tells one file from another.
+    pub sum: String,
+    /// Whether they are those that every build carries.
+    pub shipped: bool,
+    /// How they were trained and on what, by their own account.
+    pub provenance: String,
+}
+
 /// A unit vector for every vertex; zero where the proposal has nothing that can be normalised.
 pub fn unit_vectors(proposal: &Proposal, n_vertices: usize) -> VertexMap<DVec3> {
     let given = proposal.sphere.iter().map(|&p| {

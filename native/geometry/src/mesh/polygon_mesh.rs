@@ -3,7 +3,7 @@
 use glam::DVec3;
 use thiserror::Error;
 
-use super::{FaceId, Id, VertexId};
+use super::{FaceId, Id, TriangleMesh, VertexId};
 
 /// The largest number of vertices, faces or corners that a mesh may have.
 pub const MAX_ELEMENTS: usize = u32::MAX as usize / 4;
@@ -64,6 +64,15 @@ pub enum PolygonMeshError {
         /// How many there are.
         n: usize,
     },
+}
+
+impl From<&TriangleMesh> for PolygonMesh {
+    /// The same vertices and faces.
+    fn from(mesh: &TriangleMesh) -> Self {
+        let faces: Vec<_> = mesh.faces().iter().map(|f| f.map(|v| v.0)).collect();
+        Self::from_faces(mesh.positions().to_vec(), &faces)
+            .expect("a triangle mesh is a polygon mesh")
+    }
 }
 
 impl PolygonMesh {

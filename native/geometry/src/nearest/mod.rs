@@ -1,4 +1,4 @@
-//! Closest points on triangles, by a tree of boxes.
+//! Closest points on triangles, and triangles that cross, by a tree of boxes.
 //!
 //! [`Bvh`] holds its own copy of the triangles in the order of its leaves, so that it outlives the
 //! mesh and a leaf is read in one piece. Boxes are four to a node and kept in `f32`, rounded
@@ -7,6 +7,7 @@
 //! bit, and of several equally close triangles the one with the smallest id is returned.
 
 mod build;
+mod crossing;
 mod search;
 mod triangle;
 
@@ -16,6 +17,7 @@ use crate::mesh::{FaceId, Id, TriangleMesh};
 use crate::progress::{Cancelled, Progress};
 use build::Node;
 
+pub use crossing::{crossing_pairs, depths};
 pub use triangle::closest_on_triangle;
 
 /// A tree of boxes over triangles, to find the closest of them.

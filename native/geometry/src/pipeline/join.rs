@@ -73,6 +73,7 @@ pub fn join_embeddings(reports: &[embed::Report], areas: &[f64]) -> embed::Repor
         if total > 0.0 { weighted / total } else { 0.0 }
     };
     let count = |of: fn(&embed::Report) -> usize| reports.iter().map(of).sum::<usize>();
+    let sum = |of: fn(&embed::Report) -> f64| reports.iter().map(of).sum::<f64>();
     let long = |of: fn(&embed::Report) -> u64| reports.iter().map(of).sum::<u64>();
     let same = |of: fn(&embed::Report) -> i64| {
         reports
@@ -97,6 +98,7 @@ pub fn join_embeddings(reports: &[embed::Report], areas: &[f64]) -> embed::Repor
             .first()
             .map(|r| r.predictor.clone())
             .unwrap_or_default(),
+        weights: reports.first().and_then(|r| r.weights.clone()),
         proposal: embed::ProposalReport {
             n_vertices: count(|r| r.proposal.n_vertices),
             energy: mean(|r| r.proposal.energy),
@@ -110,6 +112,11 @@ pub fn join_embeddings(reports: &[embed::Report], areas: &[f64]) -> embed::Repor
             mirrored: reports.iter().any(|r| r.repair.mirrored),
             n_moved: count(|r| r.repair.n_moved),
             fell_back_to_solver: reports.iter().any(|r| r.repair.fell_back_to_solver),
+        },
+        times: embed::Times {
+            propose_ms: sum(|r| r.times.propose_ms),
+            repair_ms: sum(|r| r.times.repair_ms),
+            relax_ms: sum(|r| r.times.relax_ms),
         },
     }
 }

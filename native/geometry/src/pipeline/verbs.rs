@@ -12,7 +12,7 @@ use super::split::split;
 use super::{Error, Input, VERSION, share_of_work, thread_pool, transfer_materials};
 use crate::embed::OffsetPredictor;
 use crate::measure::{self, Topology};
-use crate::mesh::{PolygonMesh, TriangleMesh};
+use crate::mesh::PolygonMesh;
 use crate::progress::Progress;
 use crate::{clean, decimate as decimation, embed as embedding};
 
@@ -143,7 +143,7 @@ pub fn decimate(
     let settings = decimation::Settings { n_faces };
     let stage = progress.part("decimate", 0.1, 0.9);
     let simplified = decimation::simplify(&prepared.mesh, &settings, &stage)?;
-    let small = triangles(&simplified.mesh);
+    let small = PolygonMesh::from(&simplified.mesh);
     let stage = progress.part("transfer", 0.9, 1.0);
     let materials = input
         .materials
@@ -155,11 +155,6 @@ pub fn decimate(
         clean: prepared.report,
         report: simplified.report,
     })
-}
-
-fn triangles(mesh: &TriangleMesh) -> PolygonMesh {
-    let faces: Vec<_> = mesh.faces().iter().map(|f| f.map(|v| v.0)).collect();
-    polygons(mesh.positions().to_vec(), &faces)
 }
 
 fn polygons(positions: Vec<DVec3>, faces: &[[u32; 3]]) -> PolygonMesh {

@@ -1,9 +1,9 @@
 //! Sparse symmetric systems: what least squares on a mesh ends in.
 //!
 //! A [`SymmetricMatrix`] is summed up entry by entry and factorised once as L Lᵀ; the [`Cholesky`]
-//! factor then solves any number of right sides. The work is faer's, on one thread and
-//! in plain arithmetic, so the same input gives the same bits on every machine. Matrices that are not positive
-//! definite are refused; there is no pivoting and no iteration.
+//! factor then solves any number of right sides. The work is faer's, on one thread and in plain
+//! arithmetic, so the same input gives the same bits on every machine. Matrices that are not
+//! positive definite are refused; there is no pivoting and no iteration.
 
 mod factor;
 mod hermitian;

@@ -31,5 +31,11 @@ pub fn check(hierarchy: &CollapseHierarchy, predictor: &dyn OffsetPredictor) -> 
     let was_valid = report.proposal.n_folds == 0 && report.proposal.degree == 1;
     let untouched = report.repair == RepairReport::default();
     assert_eq!(was_valid, untouched, "{report:?}");
+    assert_eq!(report.weights.as_ref(), predictor.weights());
+    let times = report.times;
+    for each_ms in [times.propose_ms, times.relax_ms] {
+        assert!(each_ms.is_finite() && each_ms > 0.0, "{times:?}");
+    }
+    assert!(was_valid || times.repair_ms > 0.0, "{times:?}");
     report
 }

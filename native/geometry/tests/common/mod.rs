@@ -93,8 +93,7 @@ pub fn closed(n: u32) -> Vec<(&'static str, TriangleMesh)> {
 
 /// The same mesh as polygons.
 pub fn polygons(mesh: &TriangleMesh) -> PolygonMesh {
-    let faces: Vec<_> = mesh.faces().iter().map(|f| f.map(|v| v.0)).collect();
-    PolygonMesh::from_faces(mesh.positions().to_vec(), &faces).expect("a triangle mesh is one")
+    mesh.into()
 }
 
 /// A cube of side 2 with n × n squares a side, cut alternately and mapped point by point.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use orbflow_geometry::mesh::PolygonMesh;
 
-use super::outcome::{OutcomeError, Subject, finest, polygons};
+use super::outcome::{OutcomeError, Subject, finest};
 use super::rebuilt::{ball, carried};
 use crate::sample::Sample;
 use crate::set::{Shape, Which};
@@ -22,7 +22,7 @@ impl Subject {
         let sample = Sample::of(which.name(), &shape.level, &self.levels)?;
         let directions = self.network.forward(&sample.prepared.pyramid);
         let sphere: Vec<DVec3> = directions.iter().map(|d| d.normalize_or_zero()).collect();
-        let level = polygons(&sample.mesh);
+        let level = PolygonMesh::from(&sample.mesh);
         let turned = |mesh: &PolygonMesh| {
             let points = mesh.positions().iter();
             mesh.with_positions(points.map(|&p| sample.prepared.frame * p).collect())

@@ -38,6 +38,8 @@ pub enum Proposer {
     Radial,
     /// The network, before any repair.
     Network,
+    /// The solver before any sweep.
+    Unswept,
     /// The solver.
     Solver,
     /// The network of the thesis.
@@ -184,11 +186,12 @@ impl Subject {
         let whole = finish.then(|| self.whole(&shape.whole)).transpose()?;
         let sample = Sample::of(which.name(), &shape.level, &self.levels)?;
         let network = self.network.forward(&sample.prepared.pyramid);
-        let solver = sample.solver_sphere()?;
+        let (unswept, solver) = (sample.unswept_sphere()?, sample.solver_sphere()?);
         let angles = angles_between(&network, &solver);
         let proposals = [
             (Proposer::Radial, sample.mesh.positions()),
             (Proposer::Network, &network),
+            (Proposer::Unswept, &unswept),
             (Proposer::Solver, &solver),
         ];
         let proposals = proposals.map(|(who, directions)| (who, proposed(&sample, directions)));
@@ -235,16 +238,8 @@ pub(super) fn finest(mesh: &TriangleMesh) -> Result<PolygonMesh, OutcomeError> {
         n_faces: WHOLE_FACES,
     };
     let mesh = refined(mesh.clone(), WHOLE_FACES);
-    Ok(polygons(
-        &simplify(&mesh, &settings, &Progress::none())?.mesh,
-    ))
-}
-
-/// The same mesh, as files have it.
-pub(super) fn polygons(mesh: &TriangleMesh) -> PolygonMesh {
-    let faces: Vec<_> = mesh.faces().iter().map(|f| f.map(|v| v.0)).collect();
-    PolygonMesh::from_faces(mesh.positions().to_vec(), &faces)
-        .expect("a triangle mesh is a polygon mesh")
+    let simplified = simplify(&mesh, &settings, &Progress::none())?;
+    Ok(PolygonMesh::from(&simplified.mesh))
 }
 
 /// How good directions of any length are.

@@ -67,6 +67,8 @@ pub struct Summary {
     pub proposals: BTreeMap<Proposer, ProposedSummary>,
     /// Of the shapes, in how many percent the network's proposal is worse than the radial one.
     pub worse_than_radial_pct: f64,
+    /// The same against the solver before any sweep.
+    pub worse_than_unswept_pct: f64,
     /// Medians of the angles to the solver's points: the median and what 90 % stay below.
     pub angles_deg: [f64; 2],
     /// The finished maps of whole meshes.
@@ -235,16 +237,20 @@ impl Summary {
     fn new(shapes: &[&Outcome]) -> Self {
         let who = shapes.iter().flat_map(|outcome| outcome.proposals.keys());
         let who: BTreeSet<Proposer> = who.copied().collect();
+        let worse_than_pct = |other: Proposer| {
+            share_pct(shapes, |outcome| {
+                let energy = |who: Proposer| outcome.proposals[&who].energy;
+                energy(Proposer::Network) > energy(other)
+            })
+        };
         Self {
             n_shapes: shapes.len(),
             proposals: who
                 .into_iter()
                 .map(|who| (who, ProposedSummary::new(shapes, who)))
                 .collect(),
-            worse_than_radial_pct: share_pct(shapes, |outcome| {
-                let energy = |who: Proposer| outcome.proposals[&who].energy;
-                energy(Proposer::Network) > energy(Proposer::Radial)
-            }),
+            worse_than_radial_pct: worse_than_pct(Proposer::Radial),
+            worse_than_unswept_pct: worse_than_pct(Proposer::Unswept),
             angles_deg: [0, 1].map(|i| median(shapes.iter().map(|outcome| outcome.angles_deg[i]))),
             whole: WholeSummary::new(shapes),
         }

@@ -36,11 +36,17 @@ pub trait GatedOps: Backend {
     ) -> FloatTensor<Self>;
 }
 
+/// How many rows there are, and the width of each of the four vectors in one.
+pub(super) fn n_and_width(rows: &[f32], graph: &Neighbours) -> [usize; 2] {
+    let n = graph.n_vertices();
+    [n, rows.len() / n / 4]
+}
+
 impl GatedOps for Flex {
     fn gated_sum(rows: FlexTensor, graph: Arc<Neighbours>) -> FlexTensor {
         let rows = rows.to_contiguous();
         let rows = rows.as_slice::<f32>().expect("the network is f32");
-        let (n, width) = (graph.n_vertices(), rows.len() / graph.n_vertices() / 4);
+        let [n, width] = n_and_width(rows, &graph);
         let sum = kernel::gated_sum(rows, &graph, width);
         FlexTensor::from_data(TensorData::new(sum, [n, width]))
     }
@@ -53,7 +59,7 @@ impl GatedOps for Flex {
         let [rows, by_sum] = [rows, by_sum].map(|tensor| tensor.to_contiguous());
         let [rows, by_sum] =
             [&rows, &by_sum].map(|tensor| tensor.as_slice::<f32>().expect("the network is f32"));
-        let (n, width) = (graph.n_vertices(), rows.len() / graph.n_vertices() / 4);
+        let [n, width] = n_and_width(rows, &graph);
         let by_rows = kernel::gated_sum_backward(rows, by_sum, &graph, width);
         FlexTensor::from_data(TensorData::new(by_rows, [n, 4 * width]))
     }

@@ -62,16 +62,9 @@ impl GatedOps for Cube {
 
 /// Where the neighbours of each vertex start, and all neighbours, beside some rows.
 fn table(graph: &Neighbours, rows: &CubeTensor) -> [IntTensor<Cube>; 2] {
-    let vertices = 0..graph.n_vertices();
-    let mut starts = vec![0];
-    starts.extend(vertices.clone().scan(0, |end, v| {
-        *end += graph.of(v).len() as u32;
-        Some(*end)
-    }));
-    let others: Vec<u32> = vertices.flat_map(|v| graph.of(v).iter().copied()).collect();
-    [starts, others].map(|ids| {
+    graph.table().map(|ids| {
         let n = ids.len();
-        Cube::int_from_data(TensorData::new(ids, [n]), &rows.device)
+        Cube::int_from_data(TensorData::new(ids.to_vec(), [n]), &rows.device)
     })
 }
 

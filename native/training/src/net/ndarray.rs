@@ -13,12 +13,12 @@ use burn::tensor::{TensorData, read_sync};
 use orbflow_network::gated as kernel;
 use orbflow_network::neighbours::Neighbours;
 
-use super::backend::GatedOps;
+use super::backend::{GatedOps, n_and_width};
 
 impl GatedOps for NdArray {
     fn gated_sum(rows: NdArrayTensor, graph: Arc<Neighbours>) -> NdArrayTensor {
         let rows = numbers(rows);
-        let (n, width) = (graph.n_vertices(), rows.len() / graph.n_vertices() / 4);
+        let [n, width] = n_and_width(&rows, &graph);
         let sum = kernel::gated_sum(&rows, &graph, width);
         NdArrayTensor::from_data(TensorData::new(sum, [n, width]))
     }
@@ -29,7 +29,7 @@ impl GatedOps for NdArray {
         graph: Arc<Neighbours>,
     ) -> NdArrayTensor {
         let [rows, by_sum] = [rows, by_sum].map(numbers);
-        let (n, width) = (graph.n_vertices(), rows.len() / graph.n_vertices() / 4);
+        let [n, width] = n_and_width(&rows, &graph);
         let by_rows = kernel::gated_sum_backward(&rows, &by_sum, &graph, width);
         NdArrayTensor::from_data(TensorData::new(by_rows, [n, 4 * width]))
     }
