@@ -30,6 +30,7 @@ mod sheet;
 mod sites;
 mod skin;
 mod snap;
+mod springs;
 mod straddle;
 mod target;
 #[cfg(test)]
@@ -77,6 +78,10 @@ pub struct Settings {
     /// How much quads that flow wish to be squares while they are fitted, relative to the pull of
     /// the surface: at 0.1 they come nearer but are sheared, at 1 they miss detail.
     pub squareness: f64,
+    /// How much edges of quads that flow wish to be equally long while they are fitted, relative to
+    /// the pull of the surface; 0 for not at all. Quads wish the more to be squares with it: else
+    /// equal edges make rhombs.
+    pub evenness: f64,
 }
 
 /// The size that faces are evened out to.
@@ -105,6 +110,7 @@ impl Default for Settings {
                 ..Anchor::default()
             },
             squareness: 0.25,
+            evenness: 0.0,
         }
     }
 }
@@ -227,6 +233,7 @@ pub fn deform(
         anchor: settings.anchor,
         sites: &[],
         squareness: 0.0,
+        evenness: 0.0,
     };
     report.n_unprojected = project::project(&mut sheet, target, fit.reach, progress)?;
     let part = progress.part("", 0.7, 1.0);
@@ -269,6 +276,9 @@ impl Deformed {
 const N_LEADS: usize = 8;
 /// Sites of the surface that call upon flowing quads, for each quad.
 const SITES_PER_QUAD: usize = 6;
+/// How much more quads wish to be squares where their edges wish for one length: at 1 a hundredth
+/// of them is sheared.
+const SQUARES_TOO: f64 = 1.4;
 /// Rounds of relaxation between two moves along sharp lines.
 const ROUNDS_PER_SLIDE: usize = 4;
 
@@ -312,7 +322,7 @@ pub fn deform_flow(
         N_LEADS,
         &progress.part("", 0.0, 0.05),
     )?;
-    let mut follower = Follower::new(map, &sheet, flowing);
+    let mut follower = Follower::new(map, &sheet, flowing, settings.evenness);
     let part = progress.part("", 0.05, 0.1);
     let mut seams = Seams::new(&mut sheet, flowing.seams, &mut follower, &part)?;
     let n_rounds = settings.n_flow_relaxations;
@@ -333,7 +343,8 @@ pub fn deform_flow(
         reach: sheet.mean_edge(),
         anchor: settings.flow_anchor,
         sites: &sites::spread(target, SITES_PER_QUAD * sheet.faces().len()),
-        squareness: settings.squareness,
+        squareness: settings.squareness * (1.0 + SQUARES_TOO * settings.evenness),
+        evenness: settings.evenness,
     };
     let part = progress.part("", 0.7, 1.0);
     fit.straddle(&mut sheet, settings.n_flow_straddles, &part)?;

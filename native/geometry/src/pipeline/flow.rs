@@ -292,7 +292,10 @@ impl Ground<'_> {
             sizes: &found.sizes,
             seams: &found.seams,
         };
-        let settings = deform::Settings::default();
+        let settings = deform::Settings {
+            evenness: self.evenness(),
+            ..deform::Settings::default()
+        };
         let fit = || deform::deform_flow(&self.even, flowing, self.target, &settings, &part);
         let deformed = clock.step("deform", || told(fit().map_err(pipeline::Error::from)))?;
         let mirrored = found.images.as_deref().zip(self.doubled.as_ref());
@@ -320,6 +323,14 @@ impl Ground<'_> {
                 cover: covered.report,
             },
         }))
+    }
+
+    /// How much edges wish for one length; where somebody wants quads of other sizes, not at all.
+    fn evenness(&self) -> f64 {
+        match self.asked.density {
+            None => self.asked.settings.style.evenness(),
+            Some(_) => 0.0,
+        }
     }
 
     /// The flow of the surface, laid on its sphere.
