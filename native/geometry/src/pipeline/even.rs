@@ -136,6 +136,8 @@ pub fn even(
     let part = progress.part("", 0.7, 1.0);
     let settings = deform::Settings {
         sizes: if is_finer { Sizes::Own } else { Sizes::Equal },
+        // Quads are made on it, and tips that are moved would be lost to them.
+        separates: false,
         ..deform::Settings::default()
     };
     let deformed = deform::deform(map, &primitive, target, &settings, &part)?;
