@@ -27,16 +27,18 @@ const SLOPE: f64 = 0.25;
 /// Curvatures count as at least and at most this, per wanted length of an edge: below, a quad is
 /// as good as flat; above, it cannot show the shape.
 const BENT: [f64; 2] = [0.05, 3.0];
+/// Round limbs with room for fewer quads than this sizes are capped: quads are sheared or doubled.
+const FEWEST: f64 = 3.0;
 /// What limbs get in even quads.
 const EVEN_LIMBS: Limbs = Limbs {
-    around: 3.0,
+    more: 0.0,
     least: 0.3,
     growth: 1.25,
 };
-/// What they get at full adaptivity: at 3 around fingers have no rings, at 5 faces and trunks of
-/// bodies lose more than hands gain.
+/// What they get at full adaptivity: without one more, fingers have no rings; with two more, faces
+/// and trunks of bodies lose more than hands gain.
 const ADAPTIVE_LIMBS: Limbs = Limbs {
-    around: 4.0,
+    more: 1.0,
     least: 0.4,
     growth: 1.5,
 };
@@ -44,8 +46,9 @@ const ADAPTIVE_LIMBS: Limbs = Limbs {
 /// How limbs that are thin for a quad are favoured.
 #[derive(Clone, Copy)]
 struct Limbs {
-    /// They get as many quads around them as this; with fewer than 3 these are sheared or doubled.
-    around: f64,
+    /// So many more quads than the fewest go round them where no more than two would; fewer where
+    /// nearly enough would, so that sizes do not jump where a limb grows thick.
+    more: f64,
     /// But none smaller than this share of the even size.
     least: f64,
     /// How much longer edges elsewhere may become to make room; beyond, limbs give way too.
@@ -57,7 +60,7 @@ impl Limbs {
         let [even, adaptive] = [EVEN_LIMBS, ADAPTIVE_LIMBS];
         let between = |a: f64, b: f64| a + (b - a) * adaptivity.min(1.0);
         Self {
-            around: between(even.around, adaptive.around),
+            more: between(even.more, adaptive.more),
             least: between(even.least, adaptive.least),
             growth: between(even.growth, adaptive.growth),
         }
@@ -70,9 +73,10 @@ impl Limbs {
         even: f64,
         progress: &Progress,
     ) -> Result<VertexMap<f64>, Cancelled> {
-        let mut caps = girths(mesh, self.around * even, progress)?;
+        let mut caps = girths(mesh, FEWEST * even, progress)?;
         for cap in caps.as_mut_slice() {
-            *cap = (*cap / self.around).max(self.least * even);
+            let missing = (FEWEST - *cap / even).clamp(0.0, 1.0);
+            *cap = (*cap / (FEWEST + self.more * missing)).max(self.least * even);
         }
         grade(mesh, &mut caps, SLOPE);
         Ok(caps)
