@@ -7,7 +7,7 @@ BIN = $(VENV)/bin
 WHEEL_FLAGS ?= $(if $(filter Linux,$(shell uname)),--zig --compatibility manylinux_2_28)
 # The meshes that benchmarks, training and evaluation read, and the run whose weights ship.
 DATA ?= ../shared/data
-RUN = native/training/runs/2026-11-24
+RUN = native/training/runs/2026-11-26
 # What training runs on besides flex, and is tested: not cuda, whose build fetches a compiler.
 ENGINES = orbflow-cli/ndarray,orbflow-cli/wgpu
 SOURCES := $(shell find Cargo.toml Cargo.lock native/*/Cargo.toml native/*/src native/network/weights.orbflow native/python -type f 2>/dev/null)
@@ -56,8 +56,8 @@ weights: sets ## Repeats the run whose weights are committed, in dist/run
 
 evaluation: sets $(VENV)/venv.stamp ## Measures the figures of docs/evaluation.md anew
 	rm -rf dist/meshes
-	target/release/orbflow evaluate dist/train.set --other dist/dev.set --baseline thesis --most 40 --finish \
-		--meshes dist/meshes --report dist/evaluation.json
+	target/release/orbflow evaluate dist/train.set --other dist/dev.set --other dist/makehuman.set \
+		--baseline thesis --most 40 --finish --meshes dist/meshes --report dist/evaluation.json
 	$(BIN)/python scripts/evaluation.py dist/evaluation.json docs/evaluation.md
 	$(BIN)/python scripts/evaluation_grid.py dist/evaluation.json dist/meshes target/release/orbflow docs/pictures/evaluation.jpg
 	target/release/orbflow curve $(RUN)
@@ -66,8 +66,9 @@ evaluation: sets $(VENV)/venv.stamp ## Measures the figures of docs/evaluation.m
 sets:
 	cargo build --release --locked -p orbflow-cli --features train
 	mkdir -p dist
-	target/release/orbflow prepare $(DATA)/quaternius -o dist/train.set --procedural 294
+	target/release/orbflow prepare $(DATA)/quaternius -o dist/train.set --procedural 600
 	target/release/orbflow prepare $(DATA)/dev -o dist/dev.set
+	target/release/orbflow prepare $(DATA)/makehuman/proxies --licence CC0-1.0 -o dist/makehuman.set
 
 lint: $(VENV)/lint.stamp ## Runs every check that is not a test
 	cargo fmt --all --check

@@ -1,4 +1,4 @@
-//! AdamW, whose state is loaded onto the device that trains.
+//! The optimizer of a run, whose state is loaded onto the device that trains.
 
 use burn::grad_clipping::GradientClippingConfig;
 use burn::module::ParamGroup;
@@ -9,7 +9,7 @@ use burn::optim::{
 use burn::tensor::Device;
 use burn::tensor::kind::BridgeTensor;
 
-/// AdamW for a network that trains on a device (not that of its gradients), with clipped gradients.
+/// The optimizer for a network that trains on a device, which is not yet the one with gradients.
 pub fn optimizer(device: &Device) -> ModuleOptimizer {
     let config = AdamWConfig::new().with_weight_decay(1e-2);
     let here = Here {

@@ -12,8 +12,7 @@
 //! refused, so the result covers the sphere, and with it the surface, exactly once from beginning
 //! to end. The last four steps move vertices off the map's surface by no more than an edge.
 //!
-//! Not done here: choosing the primitive (`sphere`), and proving that faces do not cross in space
-//! (what still does is counted).
+//! Not done here: choosing the primitive (`sphere`), proving that faces do not cross in space.
 
 mod cover;
 mod features;
@@ -26,6 +25,7 @@ mod reach;
 mod relax;
 mod route;
 mod separate;
+mod settings;
 mod sheet;
 mod sites;
 mod skin;
@@ -38,7 +38,7 @@ mod tests;
 mod untangle;
 
 use glam::DVec3;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use thiserror::Error;
 
 use crate::measure::{Seam, vertex_normals};
@@ -49,57 +49,11 @@ use cover::Cover;
 use follow::Follower;
 use lock::Seams;
 use reach::Span;
+pub use settings::{Settings, Sizes};
 use sheet::Sheet;
 pub use straddle::Anchor;
 use straddle::Fit;
 pub use target::Target;
-
-/// What to do, and how much of it.
-#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
-#[serde(default)]
-pub struct Settings {
-    /// How often every vertex of a mesh of triangles slides. Fewer leave uneven faces, more cost
-    /// time for little.
-    pub n_relaxations: usize,
-    /// The same for a primitive with quads, which cannot flip its way out.
-    pub n_quad_relaxations: usize,
-    /// The same for quads that flow.
-    pub n_flow_relaxations: usize,
-    /// How often the faces are fitted to the surface by least squares.
-    pub n_straddles: usize,
-    /// The same for quads that flow.
-    pub n_flow_straddles: usize,
-    /// How strongly vertices are held where they are while faces are fitted.
-    pub anchor: Anchor,
-    /// The same for quads that flow, which lie along the shape already.
-    pub flow_anchor: Anchor,
-    /// How much quads that flow wish to be squares while they are fitted, relative to the pull of
-    /// the surface: at 0.1 they come nearer but are sheared, at 1 they miss detail.
-    pub squareness: f64,
-    /// How much edges of quads that flow wish to be equally long while they are fitted, relative to
-    /// the pull of the surface; 0 for not at all. Quads wish the more to be squares with it: else
-    /// equal edges make rhombs.
-    pub evenness: f64,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            n_relaxations: 4,
-            n_quad_relaxations: 0,
-            n_flow_relaxations: 40,
-            n_straddles: 2,
-            n_flow_straddles: 4,
-            anchor: Anchor::default(),
-            flow_anchor: Anchor {
-                along: 0.02,
-                ..Anchor::default()
-            },
-            squareness: 0.25,
-            evenness: 0.0,
-        }
-    }
-}
 
 /// A primitive that has become a remeshed surface.
 #[derive(Clone, PartialEq, Debug)]
@@ -197,18 +151,19 @@ pub fn deform(
     slide_and_flip(
         &mut sheet,
         cover.as_mut(),
-        (n, &mut report),
+        (n, settings.sizes, &mut report),
         &progress.part("", 0.0, 0.5),
     )?;
     let part = progress.part("", 0.5, 0.6);
-    let [n_goals, n_pinned] = snap::snap(&mut sheet, cover.as_mut(), target, &part)?;
+    let [n_goals, n_pinned] =
+        snap::snap(&mut sheet, cover.as_mut(), (target, settings.sizes), &part)?;
     (report.n_feature_goals, report.n_feature_vertices) = (n_goals, n_pinned);
     if n_goals > 0 {
         let part = progress.part("", 0.6, 0.7);
         slide_and_flip(
             &mut sheet,
             cover.as_mut(),
-            (n.div_ceil(2), &mut report),
+            (n.div_ceil(2), settings.sizes, &mut report),
             &part,
         )?;
     }
@@ -226,7 +181,9 @@ pub fn deform(
     if cover.is_none() {
         reach::reach(&mut sheet, (target, Span::CUT_OFF), progress)?;
     }
-    [report.n_crossing, report.n_crossing_left] = separate::separate(&mut sheet, progress)?;
+    if settings.separates {
+        [report.n_crossing, report.n_crossing_left] = separate::separate(&mut sheet, progress)?;
+    }
     Ok(Deformed::new(sheet, report))
 }
 
@@ -335,7 +292,9 @@ pub fn deform_flow(
     fit.straddle(&mut sheet, settings.n_flow_straddles, &part)?;
     [report.n_knotted, report.n_opened] = untangle::untangle(&mut sheet, progress)?;
     reach::reach(&mut sheet, (target, Span::LEFT), progress)?;
-    [report.n_crossing, report.n_crossing_left] = separate::separate(&mut sheet, progress)?;
+    if settings.separates {
+        [report.n_crossing, report.n_crossing_left] = separate::separate(&mut sheet, progress)?;
+    }
     Ok(Deformed::new(sheet, report))
 }
 
@@ -366,14 +325,14 @@ fn check_primitive(primitive: &PolygonMesh) -> Result<(), Error> {
 fn slide_and_flip(
     sheet: &mut Sheet,
     mut cover: Option<&mut Cover>,
-    (n, report): (usize, &mut Report),
+    (n, sizes, report): (usize, Sizes, &mut Report),
     progress: &Progress,
 ) -> Result<(), Cancelled> {
     for round in 0..n {
         let [from, to] = [round, round + 1].map(|r| r as f64 / n as f64);
         report.n_flips += flips::flip_edges(sheet);
-        report.n_stuck =
-            relax::relax(sheet, cover.as_deref_mut(), 1, &progress.part("", from, to))?;
+        let part = progress.part("", from, to);
+        report.n_stuck = relax::relax(sheet, cover.as_deref_mut(), (1, sizes), &part)?;
     }
     report.n_flips += flips::flip_edges(sheet);
     Ok(())

@@ -7,7 +7,7 @@ use super::Settings;
 use super::attempt::Attempt;
 use super::clock::Clock;
 use super::crosses::{self, Cross};
-use super::even::{Marked, even};
+use super::even::{For, Marked, even};
 use super::probe::Halves;
 use super::{density, mirror};
 use crate::deform::{self, Deformed, Flowing, Target};
@@ -139,22 +139,22 @@ pub fn flow_part(
     let (n_quads, settings) = (asked.n_quads, asked.settings);
     let part = progress.part("sphere", 0.0, 0.15);
     let wanted = Marked::new(target.mesh(), asked.marked);
+    let mut style = settings.flow(n_quads);
+    if !wanted.is_empty() {
+        style.field.alignment *= BESIDE_MARKS;
+    }
+    let quads = For {
+        n_quads,
+        sizes: &style.sizes,
+        seed: settings.seed,
+    };
     let even = clock.step("sphere", || {
-        told(even(
-            map,
-            (target, &wanted),
-            (n_quads, settings.seed),
-            &part,
-        ))
+        told(even(map, (target, &wanted), &quads, &part))
     })?;
     let even = match even {
         Ok(even) => even,
         Err(reason) => return Ok(Err(reason)),
     };
-    let mut style = settings.flow(n_quads);
-    if !wanted.is_empty() {
-        style.field.alignment *= BESIDE_MARKS;
-    }
     let ground = Ground {
         even: even.map,
         lines: even.lines,
