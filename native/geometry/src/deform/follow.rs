@@ -21,6 +21,8 @@ const MOMENTUM: f64 = 0.6;
 const LOOSENINGS: [f64; 2] = [1.0, 0.3];
 /// Quality that no move may spoil: below it a move must make the worst face at the vertex better.
 const GUARDED_QUALITY: f64 = 0.7;
+/// The same where edges are to be equally long, which takes room; below, the worst quads suffer.
+const EVEN_GUARDED_QUALITY: f64 = 0.6;
 /// Below this quality a vertex that is stuck tries places around it.
 const BAD_QUALITY: f64 = 0.45;
 /// How far away these places are, in mean edges.
@@ -69,12 +71,19 @@ pub(super) struct Follower<'a> {
     stars: Stars,
     /// The last way of every vertex, of which it goes on for a share.
     ways: VertexMap<DVec3>,
+    /// The share of an edge's own length in what is wanted.
+    own_length: f64,
+    /// The quality that no move may spoil.
+    guarded: f64,
 }
 
 impl<'a> Follower<'a> {
-    /// At rest.
-    pub fn new(map: &SphereMap, sheet: &Sheet, flowing: Flowing<'a>) -> Self {
+    /// At rest; `evenness` from 0 to 1 says how much equal lengths matter.
+    pub fn new(map: &SphereMap, sheet: &Sheet, flowing: Flowing<'a>, evenness: f64) -> Self {
+        let even = EVEN_GUARDED_QUALITY - GUARDED_QUALITY;
         Self {
+            own_length: OWN_LENGTH * (1.0 - evenness),
+            guarded: GUARDED_QUALITY + even * evenness,
             flowing,
             cover: Cover::new(map, sheet),
             stars: Stars::new(sheet),
@@ -128,11 +137,11 @@ impl<'a> Follower<'a> {
         if loosen(sheet, v, star) {
             return true;
         }
-        let step = wish(sheet, self.flowing, (v, star), unit);
+        let step = wish(sheet, self.flowing, (v, star), [unit, self.own_length]);
         let step = DAMPING * climb(sheet, &self.cover, v, step) + MOMENTUM * self.ways[v];
         let before = sheet.position(v);
-        let moved = slide(sheet, v, step, GUARDED_QUALITY)
-            || slide(sheet, v, step * 0.5, GUARDED_QUALITY)
+        let moved = slide(sheet, v, step, self.guarded)
+            || slide(sheet, v, step * 0.5, self.guarded)
             || mend(
                 sheet,
                 v,
@@ -232,12 +241,13 @@ fn unit(sheet: &Sheet, sizes: &FaceMap<f64>, stars: &Stars) -> f64 {
     lengths / wanted
 }
 
-/// The way along the surface to the mean of what the edges of a vertex want.
+/// The way along the surface to the mean of what the edges of a vertex want: lengths in so many
+/// units of their sizes, but for a share of their own.
 fn wish(
     sheet: &Sheet,
     Flowing { crosses, sizes, .. }: Flowing<'_>,
     (vertex, star): (VertexId, &[VertexId]),
-    unit: f64,
+    [unit, own]: [f64; 2],
 ) -> DVec3 {
     let here = sheet.point(vertex);
     let sum: DVec3 = star
@@ -247,7 +257,7 @@ fn wish(
             let edge = here.position - there.position;
             let wanted = [here, there].map(|end| unit * sizes[end.place.face]);
             let length = f64::midpoint(wanted[0], wanted[1]);
-            let size = OWN_LENGTH * edge.length() + (1.0 - OWN_LENGTH) * length;
+            let size = own * edge.length() + (1.0 - own) * length;
             let arms =
                 [here, there].map(|end| nearest_arm(crosses[end.place.face], end.normal, edge));
             there.position + (arms[0] + arms[1]) * (0.5 * size)

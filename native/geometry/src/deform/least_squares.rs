@@ -4,12 +4,15 @@ use glam::{DMat3, DVec3};
 
 use super::Anchor;
 use super::sheet::Sheet;
+use super::springs::Springs;
 use crate::mesh::{Id, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
 
 /// Sweeps of the block Gauss-Seidel solver. Samples couple neighbours so weakly that this is as good
 /// as a factorisation, which takes ten times as long.
 const N_SWEEPS: usize = 6;
+/// With springs, which couple neighbours strongly: fewer leave lengths uneven over long ways.
+const N_SPRING_SWEEPS: usize = 20;
 /// How many samples a triangle has.
 pub(super) const N_SAMPLES: usize = 6;
 /// Where: near the corners and in the middle of the sides.
@@ -55,6 +58,8 @@ pub(super) struct Problem<'a> {
     pub calls: &'a [Call],
     pub wishes: &'a VertexMap<Wish>,
     pub anchor: Anchor,
+    /// Where edges wish to be equally long.
+    pub springs: Option<&'a Springs>,
 }
 
 impl Problem<'_> {
@@ -64,7 +69,8 @@ impl Problem<'_> {
         let triangles = self.calls.iter().map(|call| call.triangle as usize);
         let calls = starts(triangles, self.samples.len());
         let mut steps = VertexMap::filled(sheet.n_vertices(), DVec3::ZERO);
-        for _ in 0..N_SWEEPS {
+        let n_sweeps = self.springs.map_or(N_SWEEPS, |_| N_SPRING_SWEEPS);
+        for _ in 0..n_sweeps {
             for v in sheet.vertex_ids().filter(|&v| !sheet.is_pinned(v)) {
                 if v.0 % 4096 == 0 {
                     progress.check()?;
@@ -78,6 +84,12 @@ impl Problem<'_> {
                     let [from, to] = [calls[triangle], calls[triangle + 1]];
                     for call in &self.calls[from as usize..to as usize] {
                         fit.answer(call, corner as usize, others);
+                    }
+                }
+                if let Some(springs) = self.springs {
+                    for (way, gap, weight) in springs.at(sheet, v, &steps) {
+                        fit.matrix += outer(way, weight);
+                        fit.pull += way * (weight * gap);
                     }
                 }
                 let step = fit.matrix.inverse() * fit.pull;

@@ -12,8 +12,7 @@
 //! refused, so the result covers the sphere, and with it the surface, exactly once from beginning
 //! to end. The last four steps move vertices off the map's surface by no more than an edge.
 //!
-//! Not done here: choosing the primitive (`sphere`), and proving that faces do not cross in space
-//! (what still does is counted).
+//! Not done here: choosing the primitive (`sphere`), proving that faces do not cross in space.
 
 mod cover;
 mod features;
@@ -26,10 +25,12 @@ mod reach;
 mod relax;
 mod route;
 mod separate;
+mod settings;
 mod sheet;
 mod sites;
 mod skin;
 mod snap;
+mod springs;
 mod straddle;
 mod target;
 #[cfg(test)]
@@ -37,7 +38,7 @@ mod tests;
 mod untangle;
 
 use glam::DVec3;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use thiserror::Error;
 
 use crate::measure::{Seam, vertex_normals};
@@ -48,52 +49,11 @@ use cover::Cover;
 use follow::Follower;
 use lock::Seams;
 use reach::Span;
+pub use settings::{Settings, Sizes};
 use sheet::Sheet;
 pub use straddle::Anchor;
 use straddle::Fit;
 pub use target::Target;
-
-/// What to do, and how much of it.
-#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
-#[serde(default)]
-pub struct Settings {
-    /// How often every vertex of a mesh of triangles slides. Fewer leave uneven faces, more cost
-    /// time for little.
-    pub n_relaxations: usize,
-    /// The same for a primitive with quads, which cannot flip its way out.
-    pub n_quad_relaxations: usize,
-    /// The same for quads that flow.
-    pub n_flow_relaxations: usize,
-    /// How often the faces are fitted to the surface by least squares.
-    pub n_straddles: usize,
-    /// The same for quads that flow.
-    pub n_flow_straddles: usize,
-    /// How strongly vertices are held where they are while faces are fitted.
-    pub anchor: Anchor,
-    /// The same for quads that flow, which lie along the shape already.
-    pub flow_anchor: Anchor,
-    /// How much quads that flow wish to be squares while they are fitted, relative to the pull of
-    /// the surface: at 0.1 they come nearer but are sheared, at 1 they miss detail.
-    pub squareness: f64,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            n_relaxations: 4,
-            n_quad_relaxations: 0,
-            n_flow_relaxations: 40,
-            n_straddles: 2,
-            n_flow_straddles: 4,
-            anchor: Anchor::default(),
-            flow_anchor: Anchor {
-                along: 0.02,
-                ..Anchor::default()
-            },
-            squareness: 0.25,
-        }
-    }
-}
 
 /// A primitive that has become a remeshed surface.
 #[derive(Clone, PartialEq, Debug)]
@@ -191,18 +151,19 @@ pub fn deform(
     slide_and_flip(
         &mut sheet,
         cover.as_mut(),
-        (n, &mut report),
+        (n, settings.sizes, &mut report),
         &progress.part("", 0.0, 0.5),
     )?;
     let part = progress.part("", 0.5, 0.6);
-    let [n_goals, n_pinned] = snap::snap(&mut sheet, cover.as_mut(), target, &part)?;
+    let [n_goals, n_pinned] =
+        snap::snap(&mut sheet, cover.as_mut(), (target, settings.sizes), &part)?;
     (report.n_feature_goals, report.n_feature_vertices) = (n_goals, n_pinned);
     if n_goals > 0 {
         let part = progress.part("", 0.6, 0.7);
         slide_and_flip(
             &mut sheet,
             cover.as_mut(),
-            (n.div_ceil(2), &mut report),
+            (n.div_ceil(2), settings.sizes, &mut report),
             &part,
         )?;
     }
@@ -212,6 +173,7 @@ pub fn deform(
         anchor: settings.anchor,
         sites: &[],
         squareness: 0.0,
+        evenness: 0.0,
     };
     report.n_unprojected = project::project(&mut sheet, target, fit.reach, progress)?;
     let part = progress.part("", 0.7, 1.0);
@@ -219,7 +181,9 @@ pub fn deform(
     if cover.is_none() {
         reach::reach(&mut sheet, (target, Span::CUT_OFF), progress)?;
     }
-    [report.n_crossing, report.n_crossing_left] = separate::separate(&mut sheet, progress)?;
+    if settings.separates {
+        [report.n_crossing, report.n_crossing_left] = separate::separate(&mut sheet, progress)?;
+    }
     Ok(Deformed::new(sheet, report))
 }
 
@@ -254,6 +218,9 @@ impl Deformed {
 const N_LEADS: usize = 8;
 /// Sites of the surface that call upon flowing quads, for each quad.
 const SITES_PER_QUAD: usize = 6;
+/// How much more quads wish to be squares where their edges wish for one length: at 1 a hundredth
+/// of them is sheared.
+const SQUARES_TOO: f64 = 1.4;
 /// Rounds of relaxation between two moves along sharp lines.
 const ROUNDS_PER_SLIDE: usize = 4;
 
@@ -297,7 +264,7 @@ pub fn deform_flow(
         N_LEADS,
         &progress.part("", 0.0, 0.05),
     )?;
-    let mut follower = Follower::new(map, &sheet, flowing);
+    let mut follower = Follower::new(map, &sheet, flowing, settings.evenness);
     let part = progress.part("", 0.05, 0.1);
     let mut seams = Seams::new(&mut sheet, flowing.seams, &mut follower, &part)?;
     let n_rounds = settings.n_flow_relaxations;
@@ -318,13 +285,16 @@ pub fn deform_flow(
         reach: sheet.mean_edge(),
         anchor: settings.flow_anchor,
         sites: &sites::spread(target, SITES_PER_QUAD * sheet.faces().len()),
-        squareness: settings.squareness,
+        squareness: settings.squareness * (1.0 + SQUARES_TOO * settings.evenness),
+        evenness: settings.evenness,
     };
     let part = progress.part("", 0.7, 1.0);
     fit.straddle(&mut sheet, settings.n_flow_straddles, &part)?;
     [report.n_knotted, report.n_opened] = untangle::untangle(&mut sheet, progress)?;
     reach::reach(&mut sheet, (target, Span::LEFT), progress)?;
-    [report.n_crossing, report.n_crossing_left] = separate::separate(&mut sheet, progress)?;
+    if settings.separates {
+        [report.n_crossing, report.n_crossing_left] = separate::separate(&mut sheet, progress)?;
+    }
     Ok(Deformed::new(sheet, report))
 }
 
@@ -355,14 +325,14 @@ fn check_primitive(primitive: &PolygonMesh) -> Result<(), Error> {
 fn slide_and_flip(
     sheet: &mut Sheet,
     mut cover: Option<&mut Cover>,
-    (n, report): (usize, &mut Report),
+    (n, sizes, report): (usize, Sizes, &mut Report),
     progress: &Progress,
 ) -> Result<(), Cancelled> {
     for round in 0..n {
         let [from, to] = [round, round + 1].map(|r| r as f64 / n as f64);
         report.n_flips += flips::flip_edges(sheet);
-        report.n_stuck =
-            relax::relax(sheet, cover.as_deref_mut(), 1, &progress.part("", from, to))?;
+        let part = progress.part("", from, to);
+        report.n_stuck = relax::relax(sheet, cover.as_deref_mut(), (1, sizes), &part)?;
     }
     report.n_flips += flips::flip_edges(sheet);
     Ok(())

@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 
+use super::Sizes;
 use super::cover::Cover;
 use super::sheet::{Face, Sheet};
-use crate::mesh::VertexId;
+use crate::mesh::{FaceId, VertexId};
 use crate::progress::{Cancelled, Progress};
 
 /// Quality that no move may spoil: below it a move must make the worst face at the vertex better.
@@ -21,7 +22,7 @@ const SIZE_WISH: f64 = 0.8;
 pub(super) fn relax(
     sheet: &mut Sheet,
     mut cover: Option<&mut Cover>,
-    n_rounds: usize,
+    (n_rounds, sizes): (usize, Sizes),
     progress: &Progress,
 ) -> Result<usize, Cancelled> {
     let mut n_refused = 0;
@@ -31,7 +32,7 @@ pub(super) fn relax(
             cover.update(sheet);
         }
         let cover = cover.as_deref();
-        let radius = wanted_radius(sheet);
+        let mean = mean_area(sheet, sheet.faces().ids());
         n_refused = 0;
         for v in sheet.vertex_ids() {
             if v.0 % 4096 == 0 {
@@ -40,7 +41,11 @@ pub(super) fn relax(
             if sheet.is_pinned(v) {
                 continue;
             }
-            let step = wish(sheet, cover, v, radius);
+            let area = match sizes {
+                Sizes::Equal => mean,
+                Sizes::Own => mean_area(sheet, sheet.ring(v).iter().copied()),
+            };
+            let step = wish(sheet, cover, v, wanted_radius(area));
             if !slide(sheet, v, step) && !slide(sheet, v, step * 0.5) {
                 n_refused += 1;
             }
@@ -58,10 +63,13 @@ fn slide(sheet: &mut Sheet, vertex: VertexId, step: DVec3) -> bool {
     after >= before.min(GUARDED_QUALITY) && sheet.try_move(vertex, there)
 }
 
-/// The circumradius of a regular face when all have equal area.
-fn wanted_radius(sheet: &Sheet) -> [f64; 2] {
-    let areas = sheet.faces().ids().map(|face| sheet.area(face));
-    let mean = areas.sum::<f64>() / sheet.faces().len().max(1) as f64;
+fn mean_area(sheet: &Sheet, faces: impl ExactSizeIterator<Item = FaceId>) -> f64 {
+    let n = faces.len().max(1) as f64;
+    faces.map(|face| sheet.area(face)).sum::<f64>() / n
+}
+
+/// The circumradius of a regular triangle and of a square of an area.
+fn wanted_radius(mean: f64) -> [f64; 2] {
     // A triangle of circumradius r has area 3√3/4 r², a square 2 r².
     [(mean * 4.0 / 27.0f64.sqrt()).sqrt(), (mean / 2.0).sqrt()]
 }

@@ -23,10 +23,12 @@ const FACES_PER_PAIR: usize = 20;
 const MOST_RINGS: usize = 2;
 /// Rounds without fewer pairs after which it stops.
 const PATIENCE: usize = 3;
+/// How far a vertex may go at all, in mean edges: farther, tips would be lost.
+const MOST_WAY: f64 = 0.7;
 /// What an edge that passes through a triangle costs, and each mean edge that it is deep.
 const THROUGH: [f64; 2] = [0.1, 0.5];
 /// What a vertex a mean edge away from where it was costs.
-const COST: f64 = 0.02;
+const COST: f64 = 0.1;
 /// Quality that no move may spoil unless a face is worse already.
 const GUARDED_QUALITY: f64 = 0.2;
 /// And up to which lack of quality is weighed.
@@ -43,6 +45,7 @@ pub(super) fn separate(sheet: &mut Sheet, progress: &Progress) -> Result<[usize;
     if n_before > sheet.faces().len() / FACES_PER_PAIR {
         return Ok([n_before; 2]);
     }
+    let edge = sheet.mean_edge();
     let (starts, n_inverted) = (positions(sheet), worse_than(sheet, 0.0).len());
     for n_rings in 0..=MOST_RINGS {
         if solid.n_pairs == 0 {
@@ -50,8 +53,12 @@ pub(super) fn separate(sheet: &mut Sheet, progress: &Progress) -> Result<[usize;
         }
         let before = positions(sheet);
         if n_rings > 0 {
-            let knot = corners(sheet, &solid.crossing);
-            smooth(sheet, &grown(sheet, knot, n_rings));
+            let knot = grown(sheet, corners(sheet, &solid.crossing), n_rings);
+            smooth(sheet, &knot);
+            for v in knot {
+                let way = sheet.position(v) - starts[v];
+                sheet.lift(v, starts[v] + way.clamp_length_max(MOST_WAY * edge));
+            }
         }
         let left = move_apart(sheet, &starts, progress)?;
         if left.n_pairs < solid.n_pairs && worse_than(sheet, 0.0).len() <= n_inverted {
@@ -195,7 +202,8 @@ impl Around {
             for reach in REACHES {
                 let position = now.position + way * (reach * self.edge);
                 let there = Point { position, ..now };
-                if sheet.worst_quality(self.v, &there) < guarded {
+                let is_far = position.distance(start) > MOST_WAY * self.edge;
+                if is_far || sheet.worst_quality(self.v, &there) < guarded {
                     continue;
                 }
                 let cost = cost(self.crossed(sheet, position), &there);

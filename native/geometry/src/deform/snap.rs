@@ -9,6 +9,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
+use super::Sizes;
 use super::cover::Cover;
 use super::features::FeatureLine;
 use super::project::lift_towards;
@@ -42,7 +43,7 @@ struct Goal {
 pub(super) fn snap(
     sheet: &mut Sheet,
     mut cover: Option<&mut Cover>,
-    target: &Target,
+    (target, sizes): (&Target, Sizes),
     progress: &Progress,
 ) -> Result<[usize; 2], Cancelled> {
     let edge = sheet.mean_edge();
@@ -70,7 +71,7 @@ pub(super) fn snap(
         relax(
             sheet,
             cover.as_deref_mut(),
-            1,
+            (1, sizes),
             &progress.part("", step as f64 / N_STEPS as f64, 1.0),
         )?;
     }

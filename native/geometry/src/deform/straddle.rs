@@ -19,6 +19,7 @@ use super::project::lift_towards;
 use super::sheet::{Face, Sheet};
 use super::sites::Site;
 use super::skin::{Skin, normals, triangles};
+use super::springs::Springs;
 use super::target::Target;
 use crate::mesh::{Id, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
@@ -57,6 +58,8 @@ pub(super) struct Fit<'a> {
     /// How much quads wish to be squares, relative to the samples' pull. At 0 faces are guarded
     /// instead: no step spoils one.
     pub squareness: f64,
+    /// How much edges wish to be equally long, relative to the samples' pull.
+    pub evenness: f64,
 }
 
 impl Fit<'_> {
@@ -84,11 +87,13 @@ impl Fit<'_> {
             Ok(self.sample(sheet, corners))
         });
         let samples = samples.collect::<Result<Vec<_>, Cancelled>>()?;
+        let springs = (self.evenness > 0.0).then(|| Springs::new(sheet, self.evenness));
         let problem = Problem {
             samples: &samples,
             calls: &self.calls(sheet, progress)?,
             wishes: &self.wishes(sheet),
             anchor: self.anchor,
+            springs: springs.as_ref(),
         };
         let steps = problem.solve(sheet, progress)?;
         for v in sheet.vertex_ids() {
@@ -219,6 +224,7 @@ mod tests {
             anchor,
             sites: &sites::spread(&target, n_sites),
             squareness,
+            evenness: 0.0,
         };
         fit.straddle(&mut sheet, 4, &Progress::none()).unwrap();
         let heights = sheet.vertex_ids().map(|v| sheet.position(v).z);

@@ -233,13 +233,42 @@ fn momentum_lasts_from_one_call_to_the_next() {
     let flowing = flowing(&quads, quads.positions(), (&crosses, &sizes));
     let after = |calls: &[usize]| {
         let mut sheet = Sheet::new(&map, vertex_normals(map.mesh()), &quads);
-        let mut follower = Follower::new(&map, &sheet, flowing);
+        let mut follower = Follower::new(&map, &sheet, flowing, 0.0);
         for &n in calls {
             follower.follow(&mut sheet, n, &Progress::none()).unwrap();
         }
         sheet.into_mesh().0
     };
     assert_eq!(after(&[8]), after(&[4, 1, 3]));
+}
+
+#[test]
+fn evenness_makes_edges_of_one_length() {
+    // Of a blob, whose lumps make them differ.
+    let spread = |mesh: &TriangleMesh, evenness| {
+        let settings = Settings {
+            evenness,
+            ..Settings::default()
+        };
+        let result = flowed(mesh, 0.1, &settings);
+        assert_eq!(result.report.n_inverted, 0);
+        let corners = result
+            .mesh
+            .faces()
+            .flat_map(|f| [0, 1, 2, 3].map(|i| [f[i], f[(i + 1) % 4]]));
+        let position = |v| result.mesh.position(v);
+        let lengths: Vec<f64> = corners
+            .map(|[a, b]| position(a).distance(position(b)))
+            .collect();
+        let mean = lengths.iter().sum::<f64>() / lengths.len() as f64;
+        let squares = lengths.iter().map(|l| (l / mean - 1.0).powi(2));
+        (squares.sum::<f64>() / lengths.len() as f64).sqrt()
+    };
+    for seed in 0..3 {
+        let mesh = shapes::blob(seed, 10);
+        let [usual, even] = [0.0, 1.0].map(|evenness| spread(&mesh, evenness));
+        assert!(even < 0.9 * usual, "{seed}: {even} {usual}");
+    }
 }
 
 #[test]

@@ -1,14 +1,18 @@
 //! The even surface that flowing quads are found on, and where edges that the user marked are on it.
+//!
+//! On limbs that are thin for a quad it is finer, as far as sizes are to follow the shape: of even
+//! triangles there would be three round a finger, whose tip and gaps are lost.
 
 use glam::DVec3;
 
-use crate::deform::{self, Target};
+use crate::deform::{self, Sizes, Target};
+use crate::elementary::powf;
 use crate::mesh::{HalfedgeId, HalfedgeMap, Id, PolygonMesh, TriangleMesh, VertexId, VertexMap};
 use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
 use crate::sphere::{self, Adaptive};
 use crate::sphere_map::SphereMap;
-use crate::{embed, pipeline, transfer};
+use crate::{embed, flow, pipeline, transfer};
 
 /// The even surface has this many triangles at least, so that the field sees the shape.
 const LEAST_TRIANGLES: usize = 16_000;
@@ -101,13 +105,22 @@ pub struct Even {
     pub sphere: sphere::Report,
 }
 
-/// Makes an even triangle mesh for so many quads.
+/// What an even surface is for.
+pub struct For<'a> {
+    pub n_quads: usize,
+    /// The sizes of the quads.
+    pub sizes: &'a flow::sizes::Settings,
+    pub seed: u64,
+}
+
+/// Makes an even triangle mesh for quads.
 pub fn even(
     map: &SphereMap,
     (target, marked): (&Target, &Marked),
-    (n_quads, seed): (usize, u64),
+    quads: &For<'_>,
     progress: &Progress<'_>,
 ) -> Result<Even, pipeline::Error> {
+    let (n_quads, seed) = (quads.n_quads, quads.seed);
     let n_faces = LEAST_TRIANGLES
         .min(MOST_TRIANGLES_PER_QUAD * n_quads)
         .max((TRIANGLES_PER_QUAD * n_quads as f64) as usize);
@@ -116,10 +129,17 @@ pub fn even(
         seed,
         ..sphere::Settings::default()
     };
-    let part = progress.part("", 0.0, 0.7);
-    let Adaptive { primitive, report } = sphere::adaptive(map, &settings, &part)?;
+    let density = density(map.mesh(), quads, &progress.part("", 0.0, 0.1))?;
+    let is_finer = density.iter().any(|&wanted| wanted > 1.0);
+    let part = progress.part("", 0.1, 0.7);
+    let Adaptive { primitive, report } = sphere::sized(map, &density, &settings, &part)?;
     let part = progress.part("", 0.7, 1.0);
-    let settings = deform::Settings::default();
+    let settings = deform::Settings {
+        sizes: if is_finer { Sizes::Own } else { Sizes::Equal },
+        // Quads are made on it, and tips that are moved would be lost to them.
+        separates: false,
+        ..deform::Settings::default()
+    };
     let deformed = deform::deform(map, &primitive, target, &settings, &part)?;
     // A vertex that did not quite arrive must not cut a mark in two.
     let met = marked.met((&deformed.mesh, &deformed.led), progress)?;
@@ -135,6 +155,19 @@ pub fn even(
         marked,
         sphere: report,
     })
+}
+
+/// How many triangles per area are wanted at every vertex, in proportion: as many to a quad on
+/// limbs as elsewhere, once sizes follow the shape.
+fn density(
+    mesh: &TriangleMesh,
+    quads: &For<'_>,
+    progress: &Progress<'_>,
+) -> Result<VertexMap<f64>, Cancelled> {
+    let adaptivity = quads.sizes.adaptivity.min(1.0);
+    let shares = flow::sizes::limb_shares(mesh, quads.n_quads, quads.sizes, progress)?;
+    let wanted = |&share: &f64| powf(share, -2.0 * adaptivity);
+    Ok(shares.iter().map(wanted).collect())
 }
 
 /// Edges as halfedges on both sides of each.

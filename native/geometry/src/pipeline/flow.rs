@@ -7,7 +7,7 @@ use super::Settings;
 use super::attempt::Attempt;
 use super::clock::Clock;
 use super::crosses::{self, Cross};
-use super::even::{Marked, even};
+use super::even::{For, Marked, even};
 use super::probe::Halves;
 use super::{density, mirror};
 use crate::deform::{self, Deformed, Flowing, Target};
@@ -139,22 +139,22 @@ pub fn flow_part(
     let (n_quads, settings) = (asked.n_quads, asked.settings);
     let part = progress.part("sphere", 0.0, 0.15);
     let wanted = Marked::new(target.mesh(), asked.marked);
+    let mut style = settings.flow(n_quads);
+    if !wanted.is_empty() {
+        style.field.alignment *= BESIDE_MARKS;
+    }
+    let quads = For {
+        n_quads,
+        sizes: &style.sizes,
+        seed: settings.seed,
+    };
     let even = clock.step("sphere", || {
-        told(even(
-            map,
-            (target, &wanted),
-            (n_quads, settings.seed),
-            &part,
-        ))
+        told(even(map, (target, &wanted), &quads, &part))
     })?;
     let even = match even {
         Ok(even) => even,
         Err(reason) => return Ok(Err(reason)),
     };
-    let mut style = settings.flow(n_quads);
-    if !wanted.is_empty() {
-        style.field.alignment *= BESIDE_MARKS;
-    }
     let ground = Ground {
         even: even.map,
         lines: even.lines,
@@ -292,7 +292,10 @@ impl Ground<'_> {
             sizes: &found.sizes,
             seams: &found.seams,
         };
-        let settings = deform::Settings::default();
+        let settings = deform::Settings {
+            evenness: self.evenness(),
+            ..deform::Settings::default()
+        };
         let fit = || deform::deform_flow(&self.even, flowing, self.target, &settings, &part);
         let deformed = clock.step("deform", || told(fit().map_err(pipeline::Error::from)))?;
         let mirrored = found.images.as_deref().zip(self.doubled.as_ref());
@@ -320,6 +323,14 @@ impl Ground<'_> {
                 cover: covered.report,
             },
         }))
+    }
+
+    /// How much edges wish for one length; where somebody wants quads of other sizes, not at all.
+    fn evenness(&self) -> f64 {
+        match self.asked.density {
+            None => self.asked.settings.style.evenness(),
+            Some(_) => 0.0,
+        }
     }
 
     /// The flow of the surface, laid on its sphere.

@@ -94,7 +94,15 @@ impl Default for Style {
     }
 }
 
+/// From this adaptivity on nobody has asked for even quads.
+const UNEVEN: f64 = 0.25;
+
 impl Style {
+    /// How much edges wish for one length: 1 where there is to be but one size, 0 where sizes differ.
+    pub(super) fn evenness(self) -> f64 {
+        (1.0 - self.adaptivity / UNEVEN).max(0.0)
+    }
+
     /// What the flow of so many quads is asked for.
     fn flow(self, n_quads: usize) -> flow::Settings {
         let mut settings = flow::Settings::new(n_quads);
@@ -235,6 +243,20 @@ mod tests {
             };
             let refused = matches!(settings.check(), Err(Error::StyleOutOfRange { .. }));
             assert!(refused, "{adaptivity}");
+        }
+    }
+
+    #[test]
+    fn edges_wish_for_one_length_where_there_is_to_be_one_size_only() {
+        let evenness = |adaptivity| {
+            let style = Style {
+                adaptivity,
+                ..Style::default()
+            };
+            style.evenness()
+        };
+        for (adaptivity, wanted) in [(0.0, 1.0), (0.1, 0.6), (0.25, 0.0), (0.5, 0.0), (1.0, 0.0)] {
+            assert!((evenness(adaptivity) - wanted).abs() < 1e-12);
         }
     }
 

@@ -30,8 +30,8 @@ pub struct Weights {
 impl Default for Weights {
     fn default() -> Self {
         Self {
-            spiral: 0.6,
-            loops: 0.6,
+            spiral: 1.0,
+            loops: 1.0,
             energy: 1.0,
             count: 20.0,
         }

@@ -35,10 +35,9 @@ pub struct Wanted<'a> {
     pub sizes: &'a VertexMap<f64>,
     /// What they must not exceed.
     pub caps: &'a VertexMap<f64>,
+    /// How much longer edges elsewhere may become to make room for caps; beyond, caps give way too.
+    pub most_growth: f64,
 }
-
-/// How much longer edges elsewhere may become to make room for caps; beyond, caps give way too.
-const MOST_GROWTH: f64 = 1.25;
 
 impl Wanted<'_> {
     /// The sizes, times a factor and capped, of which `n_quads` cover the surface.
@@ -58,7 +57,7 @@ impl Wanted<'_> {
     }
 
     fn size(&self, v: VertexId, factor: f64) -> f64 {
-        let give = (factor / MOST_GROWTH).max(1.0);
+        let give = (factor / self.most_growth).max(1.0);
         (self.sizes[v] * factor).min(self.caps[v] * give)
     }
 

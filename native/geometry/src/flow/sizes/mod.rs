@@ -14,7 +14,7 @@ mod grade;
 use thiserror::Error;
 
 use crate::elementary::{hypot, powf};
-use crate::measure::{area_vector, principal_curvatures};
+use crate::measure::{area_vector, principal_curvatures, total_area};
 use crate::mesh::{FaceMap, TriangleMesh, VertexMap};
 use crate::progress::{Cancelled, Progress};
 use crate::sparse::NotPositiveDefinite;
@@ -27,10 +27,61 @@ const SLOPE: f64 = 0.25;
 /// Curvatures count as at least and at most this, per wanted length of an edge: below, a quad is
 /// as good as flat; above, it cannot show the shape.
 const BENT: [f64; 2] = [0.05, 3.0];
-/// A limb gets as many quads around it as this; with fewer they are sheared or doubled.
-const AROUND: f64 = 3.0;
-/// But none smaller than this share of the even size.
-const LEAST: f64 = 0.3;
+/// Round limbs with room for fewer quads than this sizes are capped: quads are sheared or doubled.
+const FEWEST: f64 = 3.0;
+/// What limbs get in even quads.
+const EVEN_LIMBS: Limbs = Limbs {
+    more: 0.0,
+    least: 0.3,
+    growth: 1.25,
+};
+/// What they get at full adaptivity: without one more, fingers have no rings; with two more, faces
+/// and trunks of bodies lose more than hands gain.
+const ADAPTIVE_LIMBS: Limbs = Limbs {
+    more: 1.0,
+    least: 0.4,
+    growth: 1.5,
+};
+
+/// How limbs that are thin for a quad are favoured.
+#[derive(Clone, Copy)]
+struct Limbs {
+    /// So many more quads than the fewest go round them where no more than two would; fewer where
+    /// nearly enough would, so that sizes do not jump where a limb grows thick.
+    more: f64,
+    /// But none smaller than this share of the even size.
+    least: f64,
+    /// How much longer edges elsewhere may become to make room; beyond, limbs give way too.
+    growth: f64,
+}
+
+impl Limbs {
+    fn new(adaptivity: f64) -> Self {
+        let [even, adaptive] = [EVEN_LIMBS, ADAPTIVE_LIMBS];
+        let between = |a: f64, b: f64| a + (b - a) * adaptivity.min(1.0);
+        Self {
+            more: between(even.more, adaptive.more),
+            least: between(even.least, adaptive.least),
+            growth: between(even.growth, adaptive.growth),
+        }
+    }
+
+    /// The most that edges are to be long at every vertex; infinite away from limbs.
+    fn caps(
+        self,
+        mesh: &TriangleMesh,
+        even: f64,
+        progress: &Progress,
+    ) -> Result<VertexMap<f64>, Cancelled> {
+        let mut caps = girths(mesh, FEWEST * even, progress)?;
+        for cap in caps.as_mut_slice() {
+            let missing = (FEWEST - *cap / even).clamp(0.0, 1.0);
+            *cap = (*cap / (FEWEST + self.more * missing)).max(self.least * even);
+        }
+        grade(mesh, &mut caps, SLOPE);
+        Ok(caps)
+    }
+}
 
 /// How sizes follow the shape.
 #[derive(Clone, PartialEq, Debug)]
@@ -71,8 +122,8 @@ pub enum SizesError {
 
 /// The wanted length of edges at every face, so that `n_quads` quads cover a closed mesh.
 ///
-/// A limb's quads are taken from the rest, which grow by a quarter at most; then limbs give way
-/// too. Costs two passes over the vertices in the order of their sizes, short walks around every
+/// A limb's quads are taken from the rest, which grow by a quarter to a half at most; then limbs
+/// give way too. Costs two passes over the vertices in the order of their sizes, short walks around every
 /// place, and one sparse factorisation if adaptive.
 ///
 /// # Errors
@@ -89,19 +140,33 @@ pub fn sizes(
     let mut sizes = wanted(mesh, settings, even)?;
     progress.at(0.5)?;
     grade(mesh, &mut sizes, SLOPE);
-    let mut caps = girths(mesh, AROUND * even, &progress.part("", 0.5, 0.9))?;
-    for cap in caps.as_mut_slice() {
-        *cap = (*cap / AROUND).max(LEAST * even);
-    }
-    grade(mesh, &mut caps, SLOPE);
+    let limbs = Limbs::new(settings.adaptivity);
+    let caps = limbs.caps(mesh, even, &progress.part("", 0.5, 0.9))?;
     let wanted = Wanted {
         areas: &areas,
         sizes: &sizes,
         caps: &caps,
+        most_growth: limbs.growth,
     };
     let sizes = wanted.fit(n_quads);
     let mean = |face| mesh.face(face).iter().map(|&v| sizes[v]).sum::<f64>() / 3.0;
     Ok(mesh.face_ids().map(mean).collect())
+}
+
+/// How much shorter than even ones the edges of `n_quads` quads have to be at every vertex to go
+/// round its limb, as a share, 1 away from limbs.
+///
+/// # Errors
+/// A cancellation.
+pub fn limb_shares(
+    mesh: &TriangleMesh,
+    n_quads: usize,
+    settings: &Settings,
+    progress: &Progress,
+) -> Result<VertexMap<f64>, Cancelled> {
+    let even = (total_area(mesh) / n_quads.max(1) as f64).sqrt();
+    let caps = Limbs::new(settings.adaptivity).caps(mesh, even, progress)?;
+    Ok(caps.iter().map(|cap| (cap / even).min(1.0)).collect())
 }
 
 /// What curvature and weights want, about `even` long.

@@ -1,6 +1,5 @@
 use super::*;
-use crate::measure::total_area;
-use crate::mesh::FaceId;
+use crate::mesh::{FaceId, VertexId};
 use crate::shapes;
 use glam::DVec3;
 
@@ -64,6 +63,32 @@ fn a_thin_limb_keeps_quads_around() {
         sizes[mesh.face_ids().min_by(nearest).unwrap()]
     };
     assert!(at(3.5) < 0.8 * at(0.0), "{} {}", at(3.5), at(0.0));
+}
+
+#[test]
+fn a_limb_gets_four_quads_around_once_sizes_follow_the_shape() {
+    // 0.2 π round, quads of 0.3.
+    let mesh = limb(0.1);
+    let n_quads = (total_area(&mesh) / 0.3f64.powi(2)) as usize;
+    for (adaptivity, around) in [(0.0, 3.0), (1.0, 4.0)] {
+        let settings = Settings {
+            adaptivity,
+            weights: None,
+        };
+        let shares = limb_shares(&mesh, n_quads, &settings, &Progress::none()).unwrap();
+        let middle = |v: &VertexId| mesh.position(*v).x.abs() < 0.5;
+        for v in mesh.vertex_ids().filter(middle) {
+            let found = std::f64::consts::TAU * 0.1 / (shares[v] * 0.3);
+            assert!((found / around - 1.0).abs() < 0.2, "{found} {around}");
+        }
+    }
+}
+
+#[test]
+fn what_is_no_limb_keeps_even_edges() {
+    let ball = shapes::sphere(16);
+    let shares = limb_shares(&ball, 200, &Settings::default(), &Progress::none()).unwrap();
+    assert!(shares.iter().all(|&share| share >= 1.0));
 }
 
 #[test]

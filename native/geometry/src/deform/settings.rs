@@ -1,0 +1,69 @@
+//! What a deformation is told to do.
+
+use serde::{Deserialize, Serialize};
+
+use super::Anchor;
+
+/// What to do, and how much of it.
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// What faces are evened out to while vertices slide; quads that flow have sizes of their own.
+    pub sizes: Sizes,
+    /// How often every vertex of a mesh of triangles slides. Fewer leave uneven faces, more cost
+    /// time for little.
+    pub n_relaxations: usize,
+    /// The same for a primitive with quads, which cannot flip its way out.
+    pub n_quad_relaxations: usize,
+    /// The same for quads that flow.
+    pub n_flow_relaxations: usize,
+    /// How often the faces are fitted to the surface by least squares.
+    pub n_straddles: usize,
+    /// The same for quads that flow.
+    pub n_flow_straddles: usize,
+    /// Whether faces that cross in space are moved apart in the end.
+    pub separates: bool,
+    /// How strongly vertices are held where they are while faces are fitted.
+    pub anchor: Anchor,
+    /// The same for quads that flow, which lie along the shape already.
+    pub flow_anchor: Anchor,
+    /// How much quads that flow wish to be squares while they are fitted, relative to the pull of
+    /// the surface: at 0.1 they come nearer but are sheared, at 1 they miss detail.
+    pub squareness: f64,
+    /// How much edges of quads that flow wish to be equally long while they are fitted, relative to
+    /// the pull of the surface; 0 for not at all. Quads wish the more to be squares with it: else
+    /// equal edges make rhombs.
+    pub evenness: f64,
+}
+
+/// The size that faces are evened out to.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Sizes {
+    /// One for all.
+    #[default]
+    Equal,
+    /// That of the faces around, for primitives that are finer in places.
+    Own,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            sizes: Sizes::Equal,
+            n_relaxations: 4,
+            n_quad_relaxations: 0,
+            n_flow_relaxations: 40,
+            n_straddles: 2,
+            n_flow_straddles: 4,
+            separates: true,
+            anchor: Anchor::default(),
+            flow_anchor: Anchor {
+                along: 0.02,
+                ..Anchor::default()
+            },
+            squareness: 0.25,
+            evenness: 0.0,
+        }
+    }
+}
