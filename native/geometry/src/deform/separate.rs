@@ -18,7 +18,7 @@ const REACHES: [f64; 5] = [0.4, 0.2, 0.1, 0.05, 0.02];
 /// Rounds over the corners of faces that cross, at most.
 const N_ROUNDS: usize = 20;
 /// Nothing is tried where more than one pair in so many faces crosses: it would take seconds.
-const FACES_PER_PAIR: usize = 20;
+const FACES_PER_PAIR: usize = 10;
 /// Rings of faces around what still crosses that are pulled smooth with it, at most.
 const MOST_RINGS: usize = 2;
 /// Rounds without fewer pairs after which it stops.

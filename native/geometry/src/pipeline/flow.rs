@@ -31,6 +31,8 @@ const WORTH: f64 = 0.05;
 
 /// One in so many quads may be inverted before it is opened; of more, shape is lost.
 const QUADS_PER_KNOT: usize = 50;
+/// One pair of triangles in so many quads may cross when they have been moved apart.
+const QUADS_PER_CROSSING: usize = 200;
 
 /// Curvature weighs so much less beside marked edges: irregular vertices leave their lines no way,
 /// at 5/6 a ring on a ball is lost at 2,000 quads, at 1 at 400 and 500 too.
@@ -77,7 +79,10 @@ impl FlowedPart {
         let report = &self.deformed.report;
         let n_quads = self.deformed.mesh.n_faces();
         let n_knotted = report.n_knotted.saturating_sub(n_quads / QUADS_PER_KNOT);
-        report.n_inverted + self.n_missed + n_knotted
+        let n_crossing = report
+            .n_crossing_left
+            .saturating_sub(n_quads / QUADS_PER_CROSSING);
+        report.n_inverted + self.n_missed + n_knotted + n_crossing
     }
 
     /// Whether it is to be preferred: fewer quads fail, or as many and more marks are met.
