@@ -13,9 +13,9 @@ use crate::elementary::sin;
 use crate::flow::field::OrientationField;
 use crate::mesh::{FaceMap, HalfedgeId, TriangleMesh, VertexId, VertexMap};
 
-/// Opposite singularities closer than this many edges of a quad are merged. At 1.2 pairs are left
-/// that cut loops and hardly show any shape; from 2 on the shape suffers.
-const MERGE_RADIUS: f64 = 1.8;
+/// Opposite singularities closer than this many edges of a quad are merged. Smaller leaves pairs
+/// that the result cannot hold; at 1.8 more loops close, but fingers and thin limbs lose shape.
+const MERGE_RADIUS: f64 = 1.2;
 /// Two negative ones must be closer: merging them makes a vertex of valence 6.
 const MERGE_RADIUS_NEGATIVE: f64 = 0.5;
 
@@ -26,7 +26,7 @@ const SPLIT_REACH: f64 = 2.4;
 
 /// Merges and splits singularities for quads with edges as long as `sizes` says for each face.
 ///
-/// Opposite ones closer than 1.8 edges are merged, nearest first, pairs that cancel before others;
+/// Opposite ones closer than 1.2 edges are merged, nearest first, pairs that cancel before others;
 /// negative ones closer than half an edge where the sum is at least −2. Those with index 2 or more, or −3
 /// or less, are split into units about an edge of a quad apart, at regular vertices around, as far
 /// as the mesh has any. At the end of a limb these are the four corners of a quad around the tip.
