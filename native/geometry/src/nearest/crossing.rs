@@ -26,7 +26,6 @@ pub fn crossing_pairs(
     at: impl Fn(VertexId) -> DVec3 + Copy + Sync,
     progress: &Progress,
 ) -> Result<Vec<[u32; 2]>, Cancelled> {
-    progress.at(0.0)?;
     let all: Vec<u32> = (0..triangles.len() as u32).collect();
     let search = |chunk: &[u32]| {
         progress.check()?;

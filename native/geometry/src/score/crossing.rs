@@ -7,6 +7,7 @@ use crate::progress::{Cancelled, Progress};
 /// The pairs of triangles of which an edge of one passes through the inside of the other. Pairs
 /// that share an edge are not tested.
 pub fn pairs(surface: &Surface, progress: &Progress) -> Result<Vec<[u32; 2]>, Cancelled> {
+    progress.at(0.0)?;
     let at = |v| surface.mesh.position(v);
     crossing_pairs(&surface.tree, &surface.triangles, at, progress)
 }
