@@ -6,7 +6,7 @@ use glam::{DMat3, DVec3};
 use orbflow_geometry::decimate::collapse_to_tetrahedron;
 use orbflow_geometry::elementary::ln;
 use orbflow_geometry::embed::{
-    Embedded, Error, OffsetPredictor, Settings, Solver, distortion, embed, even,
+    Embedded, Error, OffsetPredictor, Report, Settings, Solver, Times, distortion, embed, even,
 };
 use orbflow_geometry::hierarchy::CollapseHierarchy;
 use orbflow_geometry::mesh::{TriangleMesh, VertexId};
