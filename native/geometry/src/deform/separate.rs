@@ -8,13 +8,11 @@ use glam::DVec3;
 
 use super::sheet::{Face, Point, Sheet};
 use super::skin::cut;
-use super::untangle::{corners, grown, smooth, worse_than};
+use super::untangle::{REACHES, corners, grown, places_around, smooth, worse_than};
 use crate::mesh::{FaceId, Id, VertexId, VertexMap, bounds};
 use crate::nearest::{Bvh, crossing_pairs, depths};
 use crate::progress::{Cancelled, Progress};
 
-/// How far away the places are that a vertex tries, in mean edges.
-const REACHES: [f64; 5] = [0.4, 0.2, 0.1, 0.05, 0.02];
 /// Rounds over the corners of faces that cross, at most.
 const N_ROUNDS: usize = 20;
 /// Nothing is tried where more than one pair in so many faces crosses: it would take seconds.
@@ -46,12 +44,13 @@ pub(super) fn separate(sheet: &mut Sheet, progress: &Progress) -> Result<[usize;
         return Ok([n_before; 2]);
     }
     let edge = sheet.mean_edge();
-    let (starts, n_inverted) = (positions(sheet), worse_than(sheet, 0.0).len());
+    let (starts, n_inverted) = (sheet.positions(), worse_than(sheet, 0.0).len());
     for n_rings in 0..=MOST_RINGS {
         if solid.n_pairs == 0 {
             break;
         }
-        let before = positions(sheet);
+        let before = sheet.positions();
+        let mut now = solid.clone();
         if n_rings > 0 {
             let knot = grown(sheet, corners(sheet, &solid.crossing), n_rings);
             smooth(sheet, &knot);
@@ -59,12 +58,13 @@ pub(super) fn separate(sheet: &mut Sheet, progress: &Progress) -> Result<[usize;
                 let way = sheet.position(v) - starts[v];
                 sheet.lift(v, starts[v] + way.clamp_length_max(MOST_WAY * edge));
             }
+            now = Solid::new(sheet, progress)?;
         }
-        let left = move_apart(sheet, &starts, progress)?;
+        let left = move_apart(sheet, (now, &starts), progress)?;
         if left.n_pairs < solid.n_pairs && worse_than(sheet, 0.0).len() <= n_inverted {
             solid = left;
         } else {
-            lift_all(sheet, &before);
+            sheet.lift_all(&before);
         }
     }
     Ok([n_before, solid.n_pairs])
@@ -73,12 +73,11 @@ pub(super) fn separate(sheet: &mut Sheet, progress: &Progress) -> Result<[usize;
 /// Moves corners of faces that cross, round by round, and keeps the best round.
 fn move_apart(
     sheet: &mut Sheet,
-    starts: &VertexMap<DVec3>,
+    (mut solid, starts): (Solid, &VertexMap<DVec3>),
     progress: &Progress,
 ) -> Result<Solid, Cancelled> {
     let edge = sheet.mean_edge();
-    let mut solid = Solid::new(sheet, progress)?;
-    let mut best = (solid.clone(), positions(sheet));
+    let mut best = (solid.clone(), sheet.positions());
     let mut n_vain = 0;
     for _ in 0..N_ROUNDS {
         if solid.n_pairs == 0 || n_vain == PATIENCE {
@@ -93,22 +92,12 @@ fn move_apart(
         solid = Solid::new(sheet, progress)?;
         n_vain += 1;
         if solid.n_pairs < best.0.n_pairs {
-            best = (solid.clone(), positions(sheet));
+            best = (solid.clone(), sheet.positions());
             n_vain = 0;
         }
     }
-    lift_all(sheet, &best.1);
+    sheet.lift_all(&best.1);
     Ok(best.0)
-}
-
-fn lift_all(sheet: &mut Sheet, positions: &VertexMap<DVec3>) {
-    for (v, &position) in positions.iter_ids() {
-        sheet.lift(v, position);
-    }
-}
-
-fn positions(sheet: &Sheet) -> VertexMap<DVec3> {
-    sheet.vertex_ids().map(|v| sheet.position(v)).collect()
 }
 
 /// The triangles in space, and what crosses there.
@@ -197,19 +186,15 @@ impl Around {
             crossed + sheet.badness(self.v, there, ENOUGH) + COST * way
         };
         let mut best = (cost(crossed, &now), now.position);
-        let ways = now.ways().into_iter().chain([now.normal, -now.normal]);
-        for way in ways {
-            for reach in REACHES {
-                let position = now.position + way * (reach * self.edge);
-                let there = Point { position, ..now };
-                let is_far = position.distance(start) > MOST_WAY * self.edge;
-                if is_far || sheet.worst_quality(self.v, &there) < guarded {
-                    continue;
-                }
-                let cost = cost(self.crossed(sheet, position), &there);
-                if cost < best.0 {
-                    best = (cost, position);
-                }
+        for position in places_around(&now, self.edge) {
+            let there = Point { position, ..now };
+            let is_far = position.distance(start) > MOST_WAY * self.edge;
+            if is_far || sheet.worst_quality(self.v, &there) < guarded {
+                continue;
+            }
+            let cost = cost(self.crossed(sheet, position), &there);
+            if cost < best.0 {
+                best = (cost, position);
             }
         }
         sheet.lift(self.v, best.1);
@@ -280,7 +265,7 @@ mod tests {
     fn what_crosses_is_moved_apart_and_the_rest_stays() {
         let map = flat(0.05);
         let mut sheet = pushed(&map, 211);
-        let before = positions(&sheet);
+        let before = sheet.positions();
         let [n_before, n_inverted] = [n_crossing(&sheet), worse_than(&sheet, 0.0).len()];
         assert!(n_before > 5, "{n_before}");
         let counts = separate(&mut sheet, &Progress::none()).unwrap();
@@ -304,14 +289,14 @@ mod tests {
         for v in sheet.vertex_ids() {
             sheet.pin(v);
         }
-        let before = positions(&sheet);
+        let before = sheet.positions();
         let [n_before, n_left] = separate(&mut sheet, &Progress::none()).unwrap();
         assert_eq!(n_before, n_left);
-        assert_eq!(positions(&sheet), before);
+        assert_eq!(sheet.positions(), before);
         let mut sheet = pushed(&map, 3);
-        let before = positions(&sheet);
+        let before = sheet.positions();
         let [n_before, n_left] = separate(&mut sheet, &Progress::none()).unwrap();
         assert!(n_before == n_left && n_before > sheet.faces().len() / FACES_PER_PAIR);
-        assert_eq!(positions(&sheet), before);
+        assert_eq!(sheet.positions(), before);
     }
 }

@@ -137,6 +137,18 @@ impl<'a> Sheet<'a> {
         self.points[vertex].position
     }
 
+    /// Where every vertex is in space.
+    pub fn positions(&self) -> VertexMap<DVec3> {
+        self.points.iter().map(|point| point.position).collect()
+    }
+
+    /// Lifts every vertex to a position.
+    pub fn lift_all(&mut self, positions: &VertexMap<DVec3>) {
+        for (v, &position) in positions.iter_ids() {
+            self.lift(v, position);
+        }
+    }
+
     /// Makes a vertex stay where it is led.
     pub fn pin(&mut self, vertex: VertexId) {
         self.pinned[vertex] = true;

@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::follow::Stars;
 use super::sheet::{Point, Sheet};
-use crate::mesh::{FaceId, PolygonMesh, VertexId, VertexMap};
+use crate::mesh::{FaceId, PolygonMesh, VertexId};
 use crate::progress::{Cancelled, Progress};
 
 /// Quality below which a face is opened.
@@ -16,7 +16,7 @@ const BAD: f64 = 0.15;
 /// And up to which it is opened.
 const ENOUGH: f64 = 0.3;
 /// How far away the places are that a vertex tries, in mean edges.
-const REACHES: [f64; 5] = [0.4, 0.2, 0.1, 0.05, 0.02];
+pub(super) const REACHES: [f64; 5] = [0.4, 0.2, 0.1, 0.05, 0.02];
 /// Rounds over the vertices of bad faces; most are open after five.
 const N_ROUNDS: usize = 40;
 /// Rings of faces around a knot that are pulled smooth with it, at most.
@@ -41,14 +41,11 @@ pub(super) fn untangle(sheet: &mut Sheet, progress: &Progress) -> Result<[usize;
         if knots.is_empty() {
             break;
         }
-        let ids = sheet.vertex_ids();
-        let before: VertexMap<DVec3> = ids.map(|v| sheet.position(v)).collect();
+        let before = sheet.positions();
         smooth(sheet, &grown(sheet, corners(sheet, &knots), n_rings));
         n_moves += open_all(sheet, progress)?;
         if worse_than(sheet, 0.0).len() >= knots.len() {
-            for v in sheet.vertex_ids() {
-                sheet.lift(v, before[v]);
-            }
+            sheet.lift_all(&before);
         }
     }
     Ok([n_knotted, n_moves])
@@ -72,8 +69,7 @@ pub(super) fn smooth(sheet: &mut Sheet, vertices: &[VertexId]) {
 /// Opens bad faces, vertex by vertex, round by round.
 fn open_all(sheet: &mut Sheet, progress: &Progress) -> Result<usize, Cancelled> {
     let edge = sheet.mean_edge();
-    let ids = sheet.vertex_ids();
-    let starts: VertexMap<DVec3> = ids.map(|v| sheet.position(v)).collect();
+    let starts = sheet.positions();
     let mut n_moves = 0;
     for _ in 0..N_ROUNDS {
         progress.check()?;
@@ -130,6 +126,15 @@ pub(super) fn grown(sheet: &Sheet, mut vertices: Vec<VertexId>, n_rings: usize) 
     vertices
 }
 
+/// The places around a vertex that it tries, along the surface and off it, farthest first.
+pub(super) fn places_around(now: &Point, edge: f64) -> impl Iterator<Item = DVec3> {
+    let now = *now;
+    REACHES.into_iter().flat_map(move |reach| {
+        let ways = now.ways().into_iter().chain([now.normal, -now.normal]);
+        ways.map(move |way| now.position + way * (reach * edge))
+    })
+}
+
 /// Moves a vertex to the best place around it; false if it stands there.
 fn open(sheet: &mut Sheet, v: VertexId, edge: f64, start: DVec3) -> bool {
     let now = *sheet.point(v);
@@ -138,17 +143,12 @@ fn open(sheet: &mut Sheet, v: VertexId, edge: f64, start: DVec3) -> bool {
         let way = position.distance_squared(start) / (edge * edge);
         sheet.badness(v, &there, ENOUGH) + COST * way
     };
-    let ways = now.ways().into_iter().chain([now.normal, -now.normal]);
-    let ways: Vec<DVec3> = ways.collect();
     let before = cost(now.position);
     let mut best = (before, now.position);
-    for reach in REACHES {
-        for way in &ways {
-            let there = now.position + *way * (reach * edge);
-            let cost = cost(there);
-            if cost < best.0 {
-                best = (cost, there);
-            }
+    for there in places_around(&now, edge) {
+        let cost = cost(there);
+        if cost < best.0 {
+            best = (cost, there);
         }
     }
     let moves = best.0 < before * (1.0 - LEAST_GAIN);
@@ -192,7 +192,7 @@ mod tests {
             sheet.lift(v, sheet.position(v) + away);
         }
         let moved = worse_than(&sheet, BAD);
-        let before: VertexMap<DVec3> = sheet.vertex_ids().map(|v| sheet.position(v)).collect();
+        let before = sheet.positions();
         assert!(!moved.is_empty());
         let [n_knotted, n_moves] = untangle(&mut sheet, &Progress::none()).unwrap();
         assert!(n_knotted > 0 && n_moves > 0);
