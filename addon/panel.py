@@ -156,8 +156,6 @@ def _without_flow(reports: list[dict[str, Any]]) -> str:
 
 def _without_mirror(reports: list[dict[str, Any]]) -> str:
     """Whether symmetry was asked for and could not be had, and why."""
-    if any(r["settings"]["mirror"] != "off" and r["plane"] is None for r in reports):
-        return "no plane of symmetry was found"
     return _refused(reports, "mirrored", "not symmetric")
 
 

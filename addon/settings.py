@@ -33,7 +33,7 @@ _MARKS = (
 )
 _MIRRORS = (
     ("OFF", "Off", "The two sides of a mesh need not be alike"),
-    ("AUTO", "Automatic", "Across the first axis in which the mesh is symmetric, if there is one"),
+    ("AUTO", "Automatic", "Across the first axis in which every vertex is another's image, if there is one"),
     ("X", "X", "Across X; a mesh that is not symmetric is made so from the side of positive X"),
     ("Y", "Y", "Across Y; a mesh that is not symmetric is made so from the side of positive Y"),
     ("Z", "Z", "Across Z; a mesh that is not symmetric is made so from the side of positive Z"),
@@ -122,6 +122,7 @@ class Settings:
         name="Mirror",
         description="Flowing quads: makes one side the exact image of the other",
         items=_MIRRORS,
+        default="AUTO",
     )
     predictor: EnumProperty(
         name="Predictor",

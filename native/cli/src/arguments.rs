@@ -117,8 +117,8 @@ pub struct Wanted {
     #[arg(long, value_name = "FILE")]
     pub density: Option<PathBuf>,
     /// Make quads that are their own image across an axis, in the plane through the origin or the
-    /// middle of the mesh; auto finds one in which the mesh is symmetric
-    #[arg(long, default_value = "off", value_parser = mirror())]
+    /// middle of the mesh; auto: across the first in which every vertex is another's image
+    #[arg(long, default_value = "auto", value_parser = mirror())]
     pub mirror: Mirror,
 }
 

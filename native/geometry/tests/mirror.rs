@@ -7,7 +7,7 @@ use std::sync::Mutex;
 use glam::DVec3;
 use orbflow_geometry::elementary::{cos, exp, sin};
 use orbflow_geometry::embed::Solver;
-use orbflow_geometry::mesh::{PolygonMesh, TriangleMesh};
+use orbflow_geometry::mesh::{PolygonMesh, TriangleMesh, VertexId};
 use orbflow_geometry::nearest::Bvh;
 use orbflow_geometry::pipeline::{
     Error, Input, Kind, Mirror, Mirrored, Remeshed, Settings, Through, remesh,
@@ -112,6 +112,73 @@ fn a_shape_without_symmetry_stays_as_it_is_unless_an_axis_is_named() {
     assert!(!made.report.plane.unwrap().was_symmetric);
     assert_eq!(made.report.parts[0].mirrored, Some(Mirrored::Used));
     assert!(off(&made.mesh, 1, 0.0).0 < 1e-6);
+}
+
+#[test]
+fn unasked_only_what_is_symmetric_to_the_vertex_is_mirrored() {
+    let even = even_blob(12);
+    let plane = |mesh: &TriangleMesh, mirror: Mirror| {
+        let wanted = settings(mirror);
+        run(&common::polygons(mesh), &wanted).report.plane
+    };
+    assert_eq!(Settings::default().mirror, Mirror::Auto);
+    assert_eq!(plane(&even, Mirror::Auto).map(|plane| plane.axis), Some(0));
+    let mut positions = even.positions().to_vec();
+    let side = positions.iter().position(|p| p.x > 0.5).unwrap();
+    positions[side] *= 1.002;
+    let nearly = even.with_positions(positions);
+    assert_eq!(plane(&nearly, Mirror::Auto), None);
+    let named = plane(&nearly, Mirror::X).unwrap();
+    assert!(named.was_symmetric);
+    let triangles = Settings {
+        kind: Kind::Triangles,
+        ..settings(Mirror::Auto)
+    };
+    let made = run(&common::polygons(&even), &triangles);
+    assert_eq!(
+        (made.report.plane, made.report.parts[0].mirrored.clone()),
+        (None, None)
+    );
+}
+
+#[test]
+fn what_is_painted_on_one_side_alone_is_not_mirrored_unasked() {
+    let even = even_blob(12);
+    let mesh = common::polygons(&even);
+    let plane = |density: &[f64], marked: &[[VertexId; 2]]| {
+        let input = Input {
+            density: Some(density),
+            marked,
+            ..Input::new(&mesh)
+        };
+        let (solver, quiet) = (Solver::default(), Progress::none());
+        let made = remesh(input, &settings(Mirror::Auto), &solver, &quiet).unwrap();
+        made.report.plane
+    };
+    let density = |is_small: &dyn Fn(DVec3) -> bool| -> Vec<f64> {
+        let values = mesh.positions().iter().map(|&p| f64::from(is_small(p)));
+        values.collect()
+    };
+    assert!(plane(&density(&|p| p.x.abs() > 0.6), &[]).is_some());
+    assert!(plane(&density(&|p| p.x > 0.6), &[]).is_none());
+    // Some edges on the side of positive x, and their images.
+    let images = Bvh::of_points(mesh.positions());
+    let is_out = |v: VertexId| even.position(v).x > 0.6;
+    let side = even
+        .faces()
+        .iter()
+        .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let side = side.filter(|&[a, b]| a < b && is_out(a) && is_out(b));
+    let side: Vec<[VertexId; 2]> = side.take(6).collect();
+    let image = |v: VertexId| VertexId(images.closest(flipped(even.position(v), 0, 0.0)).face.0);
+    let both: Vec<[VertexId; 2]> = side
+        .iter()
+        .map(|e| e.map(image))
+        .chain(side.clone())
+        .collect();
+    let nowhere = density(&|_| false);
+    assert!(plane(&nowhere, &side).is_none());
+    assert!(plane(&nowhere, &both).is_some());
 }
 
 #[test]

@@ -183,7 +183,7 @@ def remesh(
     follow_shape: float = 0.5,
     adaptivity: float = 0.5,
     sharp_angle: float = 40.0,
-    mirror: str = "off",
+    mirror: str = "auto",
     predictor: str = "solver",
     weights: bytes | str | os.PathLike[str] | None = None,
     threads: int = 0,

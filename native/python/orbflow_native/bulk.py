@@ -54,7 +54,7 @@ def remesh(
     follow_shape: float = 0.5,
     adaptivity: float = 0.5,
     sharp_angle: float = 40.0,
-    mirror: str = "off",
+    mirror: str = "auto",
     predictor: str = "solver",
     weights: bytes | str | os.PathLike[str] | None = None,
     threads: int = 0,
@@ -82,7 +82,8 @@ def remesh(
     goes from 0 to 1: where it is 1, edges of flowing quads are about half as long as where it is
     0; the number of faces stays what was asked for. `mirror` makes flowing quads their own image
     across "x", "y" or "z", in the plane through the origin or the middle of the mesh; with "auto"
-    across the first in which the mesh is symmetric.
+    across the first in which every vertex, with its density and marks, is the image of another,
+    with "off" across none.
     Edges of the result that lie on `carried_edges` (E, 2) are told, so that what is marked on
     these can be carried over. With `cut_edges` (E, 2), along which data on corners is cut as
     texture coordinates are along seams, the result tells where each of its elements comes from.

@@ -46,7 +46,8 @@ pub struct Remeshed {
 /// Edges at which the surface turns by more than `sharp_angle` degrees, and the `marked_edges`
 /// `(E, 2) int32`, get edges of the result along them. `density` `(V,) float32` goes from 0 to 1:
 /// where it is 1, edges of flowing quads are about half as long as where it is 0. `mirror` makes flowing quads their own image
-/// across "x", "y" or "z", or with "auto" across the first in which the mesh is symmetric.
+/// across "x", "y" or "z", or with "auto" across the first in which every vertex, with its density and
+/// marks, is the image of another; with "off" across none.
 /// Edges of the result that lie on `carried_edges` `(E, 2) int32` are told, so that marks on these can
 /// be carried over. With `cut_edges` `(E, 2) int32`, along which data on corners is cut as texture
 /// coordinates are along seams, the result tells where each of its elements comes from.
@@ -61,7 +62,7 @@ pub struct Remeshed {
 #[pyfunction]
 #[pyo3(signature = (
     positions, loop_start, corner_vert, *, faces=2000, kind="quads", primitive=None,
-    follow_shape=0.5, adaptivity=0.5, sharp_angle=40.0, mirror="off", predictor="solver",
+    follow_shape=0.5, adaptivity=0.5, sharp_angle=40.0, mirror="auto", predictor="solver",
     weights=None, threads=0, seed=0, scale=None, score_samples=10_000, n_crosses=0,
     material_index=None, marked_edges=None, carried_edges=None, cut_edges=None, density=None,
     reduced=None,     progress=None, cancel=None,

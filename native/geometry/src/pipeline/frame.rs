@@ -3,6 +3,7 @@
 
 use glam::DVec3;
 
+use super::Input;
 use super::mirror::{self, Mirror, Plane};
 use crate::clean::{self, Cleaned};
 use crate::mesh::{FaceId, FaceMap, Id, PolygonMesh, TriangleMesh, bounds};
@@ -20,13 +21,13 @@ impl Prepared {
     /// Cleans first: welding needs the input's own coordinates, and a vertex without a face must
     /// not stretch the frame.
     pub fn new(input: &PolygonMesh, progress: &Progress<'_>) -> Result<Self, clean::Error> {
-        Ok(Self::facing(input, Mirror::Off, progress)?.0)
+        Ok(Self::facing(&Input::new(input), Mirror::Off, progress)?.0)
     }
 
     /// The same with the plane of symmetry that is asked for, which then goes through the frame's
     /// origin.
     pub fn facing(
-        input: &PolygonMesh,
+        input: &Input<'_>,
         wanted: Mirror,
         progress: &Progress<'_>,
     ) -> Result<(Self, Option<Plane>), clean::Error> {
@@ -34,11 +35,11 @@ impl Prepared {
             mesh,
             source,
             report,
-        } = clean::clean(input, progress)?;
+        } = clean::clean(input.mesh, progress)?;
         progress.check()?;
         let mut frame = Frame::new(bounds(mesh.positions()));
         let mut entered = mesh.with_positions(frame.enter(mesh.positions()));
-        let plane = mirror::find(&entered, &frame, wanted, progress)?;
+        let plane = mirror::find(&entered, (input, &frame), wanted, progress)?;
         if let Some(plane) = plane {
             frame.centre[plane.axis] = plane.at;
             entered = mesh.with_positions(frame.enter(mesh.positions()));

@@ -145,7 +145,7 @@ fn run(
 ) -> Result<Remeshed, Error> {
     let mut clock = Clock::default();
     let stage = progress.part("clean", 0.0, 0.02);
-    let facing = || Prepared::facing(input.mesh, settings.mirror, &stage);
+    let facing = || Prepared::facing(&input, settings.mirror(), &stage);
     let (prepared, plane) = clock.step("clean", facing)?;
     let marks = Marks::new((input.mesh, input.marked), &prepared.frame);
     let density = Density::new(&input, &prepared.frame);

@@ -162,7 +162,7 @@ impl Default for Settings {
             primitive: None,
             style: Style::default(),
             sharp_angle: 40.0,
-            mirror: Mirror::Off,
+            mirror: Mirror::default(),
             seed: 0,
             threads: 0,
             n_crosses: 0,
@@ -172,6 +172,14 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// The plane to look for: unasked only for quads that flow.
+    pub(super) fn mirror(&self) -> Mirror {
+        match self.mirror {
+            Mirror::Auto if self.primitive() != Primitive::Flow => Mirror::Off,
+            wanted => wanted,
+        }
+    }
+
     /// The primitive that is asked for, or the one that suits the kind.
     pub fn primitive(&self) -> Primitive {
         self.primitive.unwrap_or(match self.kind {

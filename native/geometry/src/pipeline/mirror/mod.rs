@@ -1,5 +1,6 @@
 //! Mirror symmetry: which plane, and what is its own image in it.
 
+mod data;
 mod even_out;
 mod face;
 mod map;

@@ -3,9 +3,11 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use crate::mesh::{TriangleMesh, bounds};
+use super::data::data_is_symmetric;
+use crate::mesh::{TriangleMesh, VertexId, bounds};
 use crate::mirror::mirrored;
 use crate::nearest::Bvh;
+use crate::pipeline::Input;
 use crate::pipeline::frame::Frame;
 use crate::progress::{Cancelled, Progress};
 
@@ -14,9 +16,11 @@ use crate::progress::{Cancelled, Progress};
 #[serde(rename_all = "kebab-case")]
 pub enum Mirror {
     /// In none.
-    #[default]
     Off,
-    /// In the first across an axis in which the mesh is its own image, if there is one.
+    /// In the first across an axis in which every vertex is the image of another, and so are its
+    /// density and the marks of edges, if there is one. A mesh that is not quite its own image
+    /// would lose by it: there the user names the axis.
+    #[default]
     Auto,
     /// In the one across x; a mesh that is not its own image there is made so from the side of
     /// positive x.
@@ -39,13 +43,13 @@ impl Mirror {
         }
     }
 
-    fn axes(self) -> &'static [usize] {
+    /// The axis that is named, if one is.
+    fn axis(self) -> Option<usize> {
         match self {
-            Self::Off => &[],
-            Self::Auto => &[0, 1, 2],
-            Self::X => &[0],
-            Self::Y => &[1],
-            Self::Z => &[2],
+            Self::Off | Self::Auto => None,
+            Self::X => Some(0),
+            Self::Y => Some(1),
+            Self::Z => Some(2),
         }
     }
 }
@@ -100,60 +104,93 @@ const MOST_DEVIATION: f64 = 0.02;
 const CLEARLY: f64 = 0.6;
 /// Two vertices are each other's images where they are no farther apart.
 const SAME: f64 = 1e-4;
+/// Vertices whose mean is farther from a plane are not each other's images in it; this spares most
+/// meshes the search for them.
+const MOST_LOPSIDED: f64 = 1e-3;
 /// About how many points are mirrored.
 const N_PROBES: usize = 8_000;
 
-/// The plane that is asked for, of a mesh in the frame of work.
-///
-/// A plane through the origin comes before one through the middle of the box, unless the mesh is
-/// clearly more symmetric in that.
+/// The plane that is asked for, of a mesh in the frame of work that was cleaned from an input.
 ///
 /// # Errors
 /// When cancelled.
 pub fn find(
     mesh: &TriangleMesh,
-    frame: &Frame,
+    (input, frame): (&Input<'_>, &Frame),
     wanted: Mirror,
     progress: &Progress<'_>,
 ) -> Result<Option<Plane>, Cancelled> {
-    if wanted == Mirror::Off {
+    match (wanted, wanted.axis()) {
+        (_, Some(axis)) => Ok(Some(named(mesh, frame, axis, progress)?)),
+        (Mirror::Auto, None) => exact(mesh, (input, frame), progress),
+        _ => Ok(None),
+    }
+}
+
+/// The planes across an axis that may be taken: through the origin, through the middle of the box.
+fn planes(mesh: &TriangleMesh, frame: &Frame, axis: usize) -> [(Through, f64); 2] {
+    let [low, high] = bounds(mesh.positions());
+    [Through::Origin, Through::Middle].map(|through| {
+        let at = match through {
+            Through::Origin => frame.enter(&[DVec3::ZERO])[0][axis],
+            Through::Middle => f64::midpoint(low[axis], high[axis]),
+        };
+        (through, at)
+    })
+}
+
+/// The first plane in which every vertex is the image of another, data on them included.
+fn exact(
+    mesh: &TriangleMesh,
+    (input, frame): (&Input<'_>, &Frame),
+    progress: &Progress<'_>,
+) -> Result<Option<Plane>, Cancelled> {
+    let mean = mesh.positions().iter().sum::<DVec3>() / mesh.n_vertices() as f64;
+    let planes = (0..3).flat_map(|axis| planes(mesh, frame, axis).map(|plane| (axis, plane)));
+    let planes = planes.filter(|&(axis, (_, at))| (mean[axis] - at).abs() <= MOST_LOPSIDED);
+    let planes: Vec<_> = planes.collect();
+    if planes.is_empty() {
         return Ok(None);
     }
-    let [low, high] = bounds(mesh.positions());
-    let tree = Bvh::build_of_mesh(mesh, progress)?;
-    for &axis in wanted.axes() {
-        let planes = [Through::Origin, Through::Middle].map(|through| {
-            (
-                through,
-                match through {
-                    Through::Origin => frame.enter(&[DVec3::ZERO])[0][axis],
-                    Through::Middle => f64::midpoint(low[axis], high[axis]),
-                },
-            )
-        });
-        let mut found: Option<(f64, Plane)> = None;
-        for (through, at) in planes {
-            let is_far = (low[axis] + high[axis] - 2.0 * at).abs() > MOST_DEVIATION;
-            let deviation = if is_far {
-                None
-            } else {
-                deviation(mesh, &tree, (axis, at), progress)?
-            };
-            let is_better = |deviation: &f64| found.is_none_or(|f| *deviation < CLEARLY * f.0);
-            if let Some(deviation) = deviation.filter(is_better) {
-                found = Some((deviation, Plane::new(frame, (axis, at), through, true)));
-            }
-        }
-        if let Some((_, plane)) = found {
-            return Ok(Some(plane));
-        }
-        if wanted != Mirror::Auto {
-            let cuts = |at: f64| low[axis] < at && at < high[axis];
-            let (through, at) = planes[usize::from(!cuts(planes[0].1))];
-            return Ok(Some(Plane::new(frame, (axis, at), through, false)));
+    let tree = Bvh::build_of_points(mesh.positions(), progress)?;
+    for (axis, (through, at)) in planes {
+        if has_image_vertices(mesh, &tree, (axis, at), progress)?
+            && data_is_symmetric((input, frame), (axis, at), progress)?
+        {
+            return Ok(Some(Plane::new(frame, (axis, at), through, true)));
         }
     }
     Ok(None)
+}
+
+/// The plane across an axis: through the origin, unless the mesh is clearly more symmetric in the
+/// one through the middle of the box, or does not reach to the origin.
+fn named(
+    mesh: &TriangleMesh,
+    frame: &Frame,
+    axis: usize,
+    progress: &Progress<'_>,
+) -> Result<Plane, Cancelled> {
+    let [low, high] = bounds(mesh.positions());
+    let tree = Bvh::build_of_mesh(mesh, progress)?;
+    let planes = planes(mesh, frame, axis);
+    let mut found: Option<(f64, Plane)> = None;
+    for (through, at) in planes {
+        let is_far = (low[axis] + high[axis] - 2.0 * at).abs() > MOST_DEVIATION;
+        let deviation = if is_far {
+            None
+        } else {
+            deviation(mesh, &tree, (axis, at), progress)?
+        };
+        let is_better = |deviation: &f64| found.is_none_or(|f| *deviation < CLEARLY * f.0);
+        if let Some(deviation) = deviation.filter(is_better) {
+            found = Some((deviation, Plane::new(frame, (axis, at), through, true)));
+        }
+    }
+    let cuts = |at: f64| low[axis] < at && at < high[axis];
+    let (through, at) = planes[usize::from(!cuts(planes[0].1))];
+    let made = || Plane::new(frame, (axis, at), through, false);
+    Ok(found.map_or_else(made, |(_, plane)| plane))
 }
 
 /// How far the image of a mesh in the frame of work is from it in the mean, if it is its own image
@@ -164,7 +201,8 @@ pub fn deviation(
     (axis, at): (usize, f64),
     progress: &Progress<'_>,
 ) -> Result<Option<f64>, Cancelled> {
-    if has_image_vertices(mesh, (axis, at), progress)? {
+    let points = Bvh::build_of_points(mesh.positions(), progress)?;
+    if has_image_vertices(mesh, &points, (axis, at), progress)? {
         return Ok(Some(0.0));
     }
     let [mut all, mut beside, mut sum] = [0.0; 3];
@@ -191,21 +229,27 @@ pub fn deviation(
     Ok((beside <= SHARE * all).then_some(sum / all.max(f64::MIN_POSITIVE)))
 }
 
-/// Whether the image of every vertex is a vertex: quads cut into triangles either way are none
-/// the less symmetric.
+/// Whether the image of every vertex is a vertex, of which there is a tree: quads cut into
+/// triangles either way are none the less symmetric.
 fn has_image_vertices(
     mesh: &TriangleMesh,
-    (axis, at): (usize, f64),
+    tree: &Bvh,
+    plane: (usize, f64),
     progress: &Progress<'_>,
 ) -> Result<bool, Cancelled> {
-    let tree = Bvh::build_of_points(mesh.positions(), progress)?;
     for &p in mesh.positions() {
         progress.check()?;
-        if tree.closest(image(p, axis, at)).distance_squared > SAME * SAME {
+        if image_vertex(tree, p, plane).is_none() {
             return Ok(false);
         }
     }
     Ok(true)
+}
+
+/// The vertex, of those in a tree, where the image of a point is.
+pub fn image_vertex(tree: &Bvh, point: DVec3, (axis, at): (usize, f64)) -> Option<VertexId> {
+    let closest = tree.closest(image(point, axis, at));
+    (closest.distance_squared <= SAME * SAME).then_some(VertexId(closest.face.0))
 }
 
 fn image(point: DVec3, axis: usize, at: f64) -> DVec3 {
