@@ -194,7 +194,15 @@ def rows(report: dict[str, Any]) -> list[tuple[str, str]]:
         for words, name, form in _ROWS
         if figures.get(name) is not None
     ]
-    return score + _proposal(report["embedding"])
+    return _symmetry(report) + score + _proposal(report["embedding"])
+
+
+def _symmetry(report: dict[str, Any]) -> list[tuple[str, str]]:
+    """The axis across which the two sides are each other's image, if they are."""
+    told = [(part["mirrored"] or {}).get("status") for part in report["parts"]]
+    if not {"used", "image"} & set(told):
+        return []
+    return [("Symmetric across", "XYZ"[report["plane"]["axis"]])]
 
 
 def _proposal(embedding: dict[str, Any]) -> list[tuple[str, str]]:

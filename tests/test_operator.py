@@ -324,3 +324,22 @@ def test_a_fallback_is_named_in_the_panel_and_the_info_line(open_fixture: Open) 
 
     panel._draw_score(Column(), report, 36)
     assert shown[:2] == ["INFO quad sphere instead of flow: no", "BLANK1 whole periods: none"]
+
+
+def test_a_symmetric_mesh_stays_so_unasked_and_the_panel_says_across_what(
+    open_fixture: Open,
+) -> None:
+    open_fixture("03")
+    shown = {}
+    for mirror in ("AUTO", "OFF"):
+        bpy.ops.mesh.primitive_uv_sphere_add()
+        thing = bpy.context.object
+        select(thing)
+        assert press.orbflow_remesh(faces=300, mirror=mirror) == {"FINISHED"}
+        panel = addon("panel")
+        shown[mirror] = dict(panel.rows(panel.last_report(thing.name)))
+        places = {tuple(np.round(vertex.co, 5)) for vertex in thing.data.vertices}
+        images = {(-x + 0.0, y, z) for x, y, z in places}
+        assert (places == images) is (mirror == "AUTO")
+    assert shown["AUTO"]["Symmetric across"] == "X"
+    assert "Symmetric across" not in shown["OFF"]
