@@ -285,7 +285,7 @@ fn climb(sheet: &Sheet, cover: &Cover, vertex: VertexId, step: DVec3) -> DVec3 {
 }
 
 /// The arm of a cross that points most along an edge.
-fn nearest_arm(arm: DVec3, normal: DVec3, edge: DVec3) -> DVec3 {
+pub(super) fn nearest_arm(arm: DVec3, normal: DVec3, edge: DVec3) -> DVec3 {
     let other = normal.cross(arm);
     let [a, b] = [edge.dot(arm), edge.dot(other)];
     if a.abs() > b.abs() {

@@ -5,6 +5,7 @@ use glam::{DMat3, DVec3};
 use super::Anchor;
 use super::sheet::Sheet;
 use super::springs::Springs;
+use super::squares::Squares;
 use crate::mesh::{Id, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
 
@@ -59,7 +60,7 @@ pub(super) struct Problem<'a> {
     pub wishes: &'a VertexMap<Wish>,
     pub anchor: Anchor,
     /// Where edges wish to be equally long.
-    pub springs: Option<&'a Springs>,
+    pub even: Option<&'a (Springs, Squares)>,
 }
 
 impl Problem<'_> {
@@ -69,7 +70,7 @@ impl Problem<'_> {
         let triangles = self.calls.iter().map(|call| call.triangle as usize);
         let calls = starts(triangles, self.samples.len());
         let mut steps = VertexMap::filled(sheet.n_vertices(), DVec3::ZERO);
-        let n_sweeps = self.springs.map_or(N_SWEEPS, |_| N_SPRING_SWEEPS);
+        let n_sweeps = self.even.map_or(N_SWEEPS, |_| N_SPRING_SWEEPS);
         for _ in 0..n_sweeps {
             for v in sheet.vertex_ids().filter(|&v| !sheet.is_pinned(v)) {
                 if v.0 % 4096 == 0 {
@@ -86,10 +87,13 @@ impl Problem<'_> {
                         fit.answer(call, corner as usize, others);
                     }
                 }
-                if let Some(springs) = self.springs {
+                if let Some((springs, squares)) = self.even {
                     for (way, gap, weight) in springs.at(sheet, v, &steps) {
                         fit.matrix += outer(way, weight);
                         fit.pull += way * (weight * gap);
+                    }
+                    for (step, weight) in squares.at(sheet, v, &steps) {
+                        fit.pull_along(sheet.point(v).normal, step, weight);
                     }
                 }
                 let step = fit.matrix.inverse() * fit.pull;
@@ -136,6 +140,12 @@ impl Fit {
             self.matrix += outer(normal, weights[corner] * weights[corner]);
             self.pull += normal * (weights[corner] * gap);
         }
+    }
+
+    /// Adds a wish for a step along the surface.
+    fn pull_along(&mut self, normal: DVec3, step: DVec3, weight: f64) {
+        self.matrix += DMat3::from_diagonal(DVec3::splat(weight)) - outer(normal, weight);
+        self.pull += (step - normal * normal.dot(step)) * weight;
     }
 
     /// Adds a site's call.

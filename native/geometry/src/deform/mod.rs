@@ -31,6 +31,7 @@ mod sites;
 mod skin;
 mod snap;
 mod springs;
+mod squares;
 mod straddle;
 mod target;
 #[cfg(test)]
@@ -52,7 +53,7 @@ use reach::Span;
 pub use settings::{Settings, Sizes};
 use sheet::Sheet;
 pub use straddle::Anchor;
-use straddle::Fit;
+use straddle::{Even, Fit};
 pub use target::Target;
 
 /// A primitive that has become a remeshed surface.
@@ -173,7 +174,7 @@ pub fn deform(
         anchor: settings.anchor,
         sites: &[],
         squareness: 0.0,
-        evenness: 0.0,
+        even: None,
     };
     report.n_unprojected = project::project(&mut sheet, target, fit.reach, progress)?;
     let part = progress.part("", 0.7, 1.0);
@@ -218,9 +219,12 @@ impl Deformed {
 const N_LEADS: usize = 8;
 /// Sites of the surface that call upon flowing quads, for each quad.
 const SITES_PER_QUAD: usize = 6;
-/// How much more quads wish to be squares where their edges wish for one length: at 1 a hundredth
-/// of them is sheared.
-const SQUARES_TOO: f64 = 1.4;
+/// The share of the wish to be squares of their own size that quads give up where their edges wish
+/// for one length: at 0 they keep what they have, at 1 the faces of a thin blade cross.
+const OWN_SIZE: f64 = 0.8;
+/// How much they wish to be squares of the mean size instead, in units of the usual wish: at 2.4 a
+/// hundredth of them is sheared, from 6 on they miss detail.
+const MEAN_SIZE: f64 = 4.8;
 /// Rounds of relaxation between two moves along sharp lines.
 const ROUNDS_PER_SLIDE: usize = 4;
 
@@ -285,8 +289,12 @@ pub fn deform_flow(
         reach: sheet.mean_edge(),
         anchor: settings.flow_anchor,
         sites: &sites::spread(target, SITES_PER_QUAD * sheet.faces().len()),
-        squareness: settings.squareness * (1.0 + SQUARES_TOO * settings.evenness),
-        evenness: settings.evenness,
+        squareness: settings.squareness * (1.0 - OWN_SIZE * settings.evenness),
+        even: (settings.evenness > 0.0).then_some(Even {
+            crosses: flowing.crosses,
+            springs: settings.evenness,
+            squares: MEAN_SIZE * settings.squareness * settings.evenness,
+        }),
     };
     let part = progress.part("", 0.7, 1.0);
     fit.straddle(&mut sheet, settings.n_flow_straddles, &part)?;

@@ -31,7 +31,7 @@ pub struct Settings {
     /// the surface: at 0.1 they come nearer but are sheared, at 1 they miss detail.
     pub squareness: f64,
     /// How much edges of quads that flow wish to be equally long while they are fitted, relative to
-    /// the pull of the surface; 0 for not at all. Quads wish the more to be squares with it: else
+    /// the pull of the surface; 0 for not at all. Quads wish to be squares of one size with it: else
     /// equal edges make rhombs.
     pub evenness: f64,
 }

@@ -20,8 +20,9 @@ use super::sheet::{Face, Sheet};
 use super::sites::Site;
 use super::skin::{Skin, normals, triangles};
 use super::springs::Springs;
+use super::squares::{Squares, spoke};
 use super::target::Target;
-use crate::mesh::{Id, VertexId, VertexMap};
+use crate::mesh::{FaceMap, Id, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
 
 /// Quality that a step may not spoil unless the face is worse already.
@@ -58,8 +59,18 @@ pub(super) struct Fit<'a> {
     /// How much quads wish to be squares, relative to the samples' pull. At 0 faces are guarded
     /// instead: no step spoils one.
     pub squareness: f64,
+    /// Where edges wish to be equally long.
+    pub even: Option<Even<'a>>,
+}
+
+/// What makes quads even.
+pub(super) struct Even<'a> {
+    /// What their edges keep to: one arm for every face of the map.
+    pub crosses: &'a FaceMap<DVec3>,
     /// How much edges wish to be equally long, relative to the samples' pull.
-    pub evenness: f64,
+    pub springs: f64,
+    /// How much quads wish to be squares of one size.
+    pub squares: f64,
 }
 
 impl Fit<'_> {
@@ -87,13 +98,16 @@ impl Fit<'_> {
             Ok(self.sample(sheet, corners))
         });
         let samples = samples.collect::<Result<Vec<_>, Cancelled>>()?;
-        let springs = (self.evenness > 0.0).then(|| Springs::new(sheet, self.evenness));
+        let even = self.even.as_ref().map(|even| {
+            let squares = Squares::new(sheet, even.crosses, even.squares);
+            (Springs::new(sheet, even.springs), squares)
+        });
         let problem = Problem {
             samples: &samples,
             calls: &self.calls(sheet, progress)?,
             wishes: &self.wishes(sheet),
             anchor: self.anchor,
-            springs: springs.as_ref(),
+            even: even.as_ref(),
         };
         let steps = problem.solve(sheet, progress)?;
         for v in sheet.vertex_ids() {
@@ -184,10 +198,9 @@ impl Fit<'_> {
 /// Where a vertex is when its quad becomes the square that is nearest to it.
 fn square_corner(sheet: &Sheet, face: &Face, vertex: VertexId) -> DVec3 {
     let corner = face.find(vertex).expect("a ring's faces have the vertex");
-    let [here, next, far, before] = [0, 1, 2, 3].map(|i| sheet.position(face.corner(corner, i)));
-    let normal = (far - here).cross(before - next).normalize_or_zero();
-    let centre = (here + next + far + before) / 4.0;
-    centre + (here - far + normal.cross(before - next)) / 4.0
+    let points = [0, 1, 2, 3].map(|i| sheet.position(face.corner(corner, i)));
+    let [here, next, far, before] = points;
+    (here + next + far + before) / 4.0 + spoke(&points).0
 }
 
 #[cfg(test)]
@@ -224,7 +237,7 @@ mod tests {
             anchor,
             sites: &sites::spread(&target, n_sites),
             squareness,
-            evenness: 0.0,
+            even: None,
         };
         fit.straddle(&mut sheet, 4, &Progress::none()).unwrap();
         let heights = sheet.vertex_ids().map(|v| sheet.position(v).z);

@@ -14,9 +14,9 @@ pub enum Attempt {
     Smoother,
     /// A field that follows it more, and other random moves.
     Closer,
-    /// The same with sizes that differ less.
+    /// The same with sizes that differ less, or more where they hardly did.
     Evener,
-    /// A field that follows it most, with sizes that differ less.
+    /// A field that follows it most, with such sizes.
     Closest,
     /// The usual field and one size.
     Even,
@@ -43,16 +43,27 @@ impl Attempt {
             }
             Self::Evener => {
                 settings = Self::Closer.settings(style);
-                settings.sizes.adaptivity *= 0.6;
+                settings.sizes.adaptivity = share_of(style, 0.6);
             }
             Self::Closest => {
                 settings.field.alignment *= 2.0;
-                settings.sizes.adaptivity *= 0.5;
+                settings.sizes.adaptivity = share_of(style, 0.5);
             }
             Self::Even => settings.sizes.adaptivity = 0.0,
         }
         settings
     }
+
+    /// Whether its settings are not those of the usual attempt.
+    pub(super) fn is_worth_trying(self, style: &flow::Settings) -> bool {
+        self == Self::Usual || self.settings(style) != *style
+    }
+}
+
+/// A share of the adaptivity of a style, no less than of the usual one: where quads of one size fail,
+/// as on legs that are thinner than they are, smaller ones may not.
+fn share_of(style: &flow::Settings, share: f64) -> f64 {
+    share * style.sizes.adaptivity.max(1.0)
 }
 
 #[cfg(test)]
@@ -64,6 +75,19 @@ mod tests {
         let style = flow::Settings::new(700);
         let all: Vec<_> = Attempt::ALL.iter().map(|a| a.settings(&style)).collect();
         assert_eq!(all[0], style);
+        for (i, one) in all.iter().enumerate() {
+            assert!(!all[i + 1..].contains(one), "{i}");
+        }
+    }
+
+    #[test]
+    fn where_one_size_is_asked_for_others_are_tried_and_nothing_is_tried_twice() {
+        let mut style = flow::Settings::new(700);
+        style.sizes.adaptivity = 0.0;
+        let worth = Attempt::ALL.iter().filter(|a| a.is_worth_trying(&style));
+        let all: Vec<_> = worth.map(|a| a.settings(&style)).collect();
+        assert_eq!(all.len(), Attempt::ALL.len() - 1);
+        assert!(all.iter().any(|one| one.sizes.adaptivity > 0.4));
         for (i, one) in all.iter().enumerate() {
             assert!(!all[i + 1..].contains(one), "{i}");
         }

@@ -257,7 +257,8 @@ impl Ground<'_> {
     ) -> Result<Result<FlowedPart, String>, Cancelled> {
         let mut best: Result<FlowedPart, String> = Err(String::new());
         let mut from = 0.0;
-        for attempt in Attempt::ALL {
+        let all = Attempt::ALL.into_iter();
+        for attempt in all.filter(|attempt| attempt.is_worth_trying(&self.style)) {
             let to = from + 0.6 * (1.0 - from);
             let found = self.attempt(attempt, clock, &progress.part("", from, to))?;
             from = to;
