@@ -92,6 +92,16 @@ fn what_is_no_limb_keeps_even_edges() {
 }
 
 #[test]
+fn what_is_no_limb_has_no_girth_whatever_the_limit() {
+    // Means of like numbers round, here and there, to less than the number.
+    let ball = shapes::sphere(8);
+    for i in 1..60 {
+        let girths = girths(&ball, 0.01 * f64::from(i), &Progress::none()).unwrap();
+        assert!(girths.iter().all(|girth| girth.is_infinite()), "{i}");
+    }
+}
+
+#[test]
 fn the_girth_of_a_limb_is_the_way_around_it() {
     let mesh = limb(0.1);
     let girths = girths(&mesh, 10.0, &Progress::none()).unwrap();
