@@ -56,19 +56,19 @@ weights: sets ## Repeats the run whose weights are committed, in dist/run
 
 evaluation: sets $(VENV)/venv.stamp ## Measures the figures of docs/evaluation.md anew
 	rm -rf dist/meshes
-	target/release/orbflow evaluate dist/train.set --other dist/dev.set --other dist/makehuman.set \
+	target/release/orbflow evaluate dist/train.set --other dist/dev.set \
 		--baseline thesis --most 40 --finish --meshes dist/meshes --report dist/evaluation.json
 	$(BIN)/python scripts/evaluation.py dist/evaluation.json docs/evaluation.md
 	$(BIN)/python scripts/evaluation_grid.py dist/evaluation.json dist/meshes target/release/orbflow docs/pictures/evaluation.jpg
 	target/release/orbflow curve $(RUN)
 
 # A set that is whole stays as it is, one that was cut is gone on with: `make clean` before shapes change.
-sets:
+sets: $(VENV)/venv.stamp
 	cargo build --release --locked -p orbflow-cli --features train
 	mkdir -p dist
-	target/release/orbflow prepare $(DATA)/quaternius -o dist/train.set --procedural 600
+	$(BIN)/python scripts/bodies.py $(DATA)/makehuman dist/bodies --most 168
+	target/release/orbflow prepare $(DATA)/quaternius dist/bodies -o dist/train.set --procedural 600
 	target/release/orbflow prepare $(DATA)/dev -o dist/dev.set
-	target/release/orbflow prepare $(DATA)/makehuman/proxies --licence CC0-1.0 -o dist/makehuman.set
 
 lint: $(VENV)/lint.stamp ## Runs every check that is not a test
 	cargo fmt --all --check

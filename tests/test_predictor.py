@@ -23,11 +23,11 @@ def fnv(data: bytes) -> int:
 
 def file_of(parameters: bytes, **change: object) -> bytes:
     """A file of weights by its layout, with any header."""
-    sizes = {"width": 4, "levels": [32, 8], "blocks": [1, 1]}
+    sizes = {"width": 4, "levels": [32, 8], "blocks": [1, 1], "relaxations": 2}
     header = {"sizes": sizes, "n_features": 0, "provenance": "made by a test"} | change
     text = json.dumps(header).encode()
     front = struct.pack(
-        "<8sIIQQ", b"ORBFLOWN", 1, len(text), len(parameters), fnv(text + parameters)
+        "<8sIIQQ", b"ORBFLOWN", 2, len(text), len(parameters), fnv(text + parameters)
     )
     return front + text + parameters
 

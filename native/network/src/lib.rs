@@ -16,6 +16,7 @@ pub mod neighbours;
 pub mod net;
 mod predictor;
 pub mod pyramid;
+pub mod relaxation;
 pub mod weights;
 
 pub use predictor::NetworkPredictor;

@@ -7,7 +7,8 @@
 //! Down: a few blocks on each level, then the mean over what collapsed into each vertex. Up: every
 //! vertex takes what its parent knows, next to what it knew itself on the way down. The coarsest
 //! level sees the whole shape in a few hops. The head adds to the direction of the vertex from the
-//! centre, so an untrained network proposes the radial projection.
+//! centre, so an untrained network proposes the radial projection, nearly. At last the vertices move
+//! towards their neighbours a few times: see [`relaxation`](crate::relaxation).
 //!
 //! This is prediction alone, in plain loops and matrix products. Training has the same network in
 //! burn; a test there compares the two.
@@ -20,9 +21,7 @@ use crate::gated::gated_sum;
 use crate::layers::{Linear, Norm, add, join};
 use crate::neighbours::Neighbours;
 use crate::pyramid::{Level, Pyramid};
-
-/// Added to the squared distance from the centre, so that a vertex there has a direction.
-pub const LEAST_SQUARE: f32 = 1e-6;
+use crate::relaxation::{relaxed, unit, vectors};
 
 /// The sizes of a network.
 #[derive(Clone, PartialEq, Eq, Debug, Serialize, Deserialize)]
@@ -34,6 +33,8 @@ pub struct Sizes {
     pub levels: Vec<usize>,
     /// How many blocks each level has, on the way down and on the way up alike.
     pub blocks: Vec<usize>,
+    /// How many times the vertices at last move towards their neighbours.
+    pub relaxations: usize,
 }
 
 impl Default for Sizes {
@@ -42,6 +43,7 @@ impl Default for Sizes {
             width: 64,
             levels: vec![500, 125, 32],
             blocks: vec![2, 3, 4],
+            relaxations: 8,
         }
     }
 }
@@ -61,7 +63,8 @@ impl Sizes {
             let blocks = n.checked_mul(2)?.checked_mul(block);
             sum(&[linear(N_FEATURES, w), blocks, linear(w.checked_mul(2)?, w)])
         });
-        sum(&[sum(&storeys.collect::<Vec<_>>()), norm, linear(w, 3)])
+        let gates = linear(w, self.relaxations.checked_mul(2)?);
+        sum(&[sum(&storeys.collect::<Vec<_>>()), norm, linear(w, 3), gates])
     }
 }
 
@@ -87,11 +90,13 @@ pub struct Network {
     storeys: Vec<Storey>,
     norm: Norm,
     head: Linear,
+    /// The gates of all relaxations; none without any.
+    gates: Option<Linear>,
 }
 
 impl Network {
     /// The network with these parameters, in the order of its parts: per level enter, down, up and
-    /// join, then norm and head; matrices by rows, one row per input. None unless they are
+    /// join, then norm, head and gates; matrices by rows, one row per input. None unless they are
     /// [`Sizes::n_parameters`].
     pub fn new(sizes: &Sizes, parameters: &[f32]) -> Option<Self> {
         if Some(parameters.len()) != sizes.n_parameters() {
@@ -111,6 +116,8 @@ impl Network {
             storeys,
             norm: Norm::take(&mut rest, width),
             head: Linear::take(&mut rest, width, 3),
+            gates: (sizes.relaxations > 0)
+                .then(|| Linear::take(&mut rest, width, 2 * sizes.relaxations)),
         })
     }
 
@@ -142,17 +149,28 @@ impl Network {
             x = storey.join.forward(&join([&x, &own], width));
             x = storey.up.iter().fold(x, |x, b| b.forward(x, &level.graph));
         }
-        let offsets = self.head.forward(&self.norm.forward(&x));
-        let features = levels.first().map_or(&[][..], |level| &level.features);
-        let rows = features
-            .chunks_exact(N_FEATURES)
-            .zip(offsets.chunks_exact(3));
-        let direction = |(features, offset): (&[f32], &[f32])| {
-            let [p, o] = [features, offset].map(|v| glam::Vec3::new(v[0], v[1], v[2]));
-            (p / (p.length_squared() + LEAST_SQUARE).sqrt() + o).as_dvec3()
+        let Some(finest) = levels.first() else {
+            return Vec::new();
         };
-        rows.map(direction).collect()
+        let known = self.norm.forward(&x);
+        let places = moved(&finest.features, &self.head.forward(&known));
+        vectors(&match &self.gates {
+            Some(gates) => relaxed(places, &gates.forward(&known), &finest.graph),
+            None => places,
+        })
     }
+}
+
+/// The directions of vertices from the centre, moved by offsets.
+fn moved(features: &[f32], offsets: &[f32]) -> Vec<f32> {
+    let rows = features
+        .chunks_exact(N_FEATURES)
+        .zip(offsets.chunks_exact(3));
+    let place = |(features, offset): (&[f32], &[f32])| {
+        let direction = unit(&features[..3]);
+        [0, 1, 2].map(|i| direction[i] + offset[i])
+    };
+    rows.flat_map(place).collect()
 }
 
 impl Block {
@@ -212,9 +230,10 @@ mod tests {
             width: 2,
             levels: vec![8, 4],
             blocks: vec![1, 0],
+            relaxations: 3,
         };
-        // Two levels of 16 + 10, two blocks of 4 + 24 + 6, the norm and the head.
-        let n = 2 * 26 + 2 * 34 + 4 + 9;
+        // Two levels of 16 + 10, two blocks of 4 + 24 + 6, the norm, the head and the gates.
+        let n = 2 * 26 + 2 * 34 + 4 + 9 + 18;
         assert_eq!(sizes.n_parameters(), Some(n));
         assert!(Network::new(&sizes, &vec![0.5; n]).is_some());
         assert!(Network::new(&sizes, &vec![0.5; n + 1]).is_none());

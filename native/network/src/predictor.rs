@@ -24,12 +24,13 @@ impl NetworkPredictor {
     /// # Errors
     /// [`ReadWeightsError`] when the parameters are not those of the header.
     pub fn new(weights: &Weights) -> Result<Self, ReadWeightsError> {
+        let sum = weights.sum();
         Ok(Self {
             network: weights.network()?,
             sizes: weights.header.sizes.clone(),
             weights: WeightsReport {
-                sum: format!("{:016x}", weights.sum()),
-                shipped: weights.is_shipped(),
+                sum: format!("{sum:016x}"),
+                shipped: sum == Weights::shipped_sum(),
                 provenance: weights.header.provenance.clone(),
             },
         })

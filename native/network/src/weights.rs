@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!  0  8 bytes  "ORBFLOWN"
-//!  8  u32      version of this layout, 1; all numbers are little-endian
+//!  8  u32      version of this layout, 2; all numbers are little-endian
 //! 12  u32      length h of the header
 //! 16  u64      length p of the parameters
 //! 24  u64      FNV-1a of header and parameters: against accidents, not against forgers
@@ -22,7 +22,7 @@ use crate::net::{Network, Sizes};
 /// The weights that every build carries; `native/training/runs/README.md` says where they come from.
 const SHIPPED: &[u8] = include_bytes!("../weights.orbflow");
 const MAGIC: &[u8; 8] = b"ORBFLOWN";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// The length of what stands before the header.
 const FRONT: usize = 32;
 /// Where the sum stands in it.
@@ -31,12 +31,13 @@ const SUM_AT: usize = 24;
 const MAX_WIDTH: usize = 512;
 const MAX_LEVELS: usize = 8;
 const MAX_BLOCKS: usize = 16;
+const MAX_RELAXATIONS: usize = 64;
 const MAX_VERTICES: usize = 1 << 24;
 
 /// What the file says of its network.
 #[derive(Clone, PartialEq, Eq, Debug, Serialize, Deserialize)]
 pub struct Header {
-    /// Widths, levels and blocks.
+    /// Widths, levels, blocks and relaxations.
     pub sizes: Sizes,
     /// How many numbers a vertex brings.
     pub n_features: usize,
@@ -135,9 +136,10 @@ impl Weights {
         fnv(header.iter().chain(&parameters))
     }
 
-    /// Whether they are those that every build carries.
-    pub fn is_shipped(&self) -> bool {
-        SHIPPED[SUM_AT..FRONT] == self.sum().to_le_bytes()
+    /// The sum of the weights that every build carries.
+    pub fn shipped_sum() -> u64 {
+        let sum = SHIPPED[SUM_AT..FRONT].iter().rev();
+        sum.fold(0, |sum, &byte| sum << 8 | u64::from(byte))
     }
 
     /// Header and parameters as files have them.
@@ -241,6 +243,7 @@ fn check_sizes(header: &Header) -> Result<(), ReadWeightsError> {
         width,
         levels,
         blocks,
+        relaxations,
     } = &header.sizes;
     let most = |list: &[usize]| list.iter().copied().max().unwrap_or(0);
     let least = levels.iter().copied().min().unwrap_or(0);
@@ -254,6 +257,7 @@ fn check_sizes(header: &Header) -> Result<(), ReadWeightsError> {
             levels.len()..=levels.len(),
         ),
         ("blocks of a level", most(blocks), 0..=MAX_BLOCKS),
+        ("relaxations", *relaxations, 0..=MAX_RELAXATIONS),
         ("vertices of the coarsest level", least, 4..=MAX_VERTICES),
         (
             "vertices of the finest level",

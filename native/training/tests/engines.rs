@@ -24,6 +24,7 @@ fn settings() -> Settings {
             width: 16,
             levels: vec![200, 60, 20],
             blocks: vec![1, 2, 2],
+            relaxations: 2,
         },
         n_steps: 20,
         batch: 2,

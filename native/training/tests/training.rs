@@ -28,6 +28,7 @@ fn small() -> Settings {
             width: 16,
             levels: vec![100, 30],
             blocks: vec![1, 2],
+            relaxations: 2,
         },
         n_steps: 12,
         batch: 2,
@@ -43,6 +44,7 @@ fn one_batch_is_learnt_to_the_energy_of_the_solver() {
             width: 48,
             levels: vec![200, 60, 20],
             blocks: vec![2, 2, 2],
+            relaxations: 8,
         },
         n_steps: 1_000,
         ..Settings::default()

@@ -16,8 +16,9 @@ use burn::nn::{LayerNorm, LayerNormConfig, Linear, LinearConfig};
 use burn::tensor::{Device, IndexingUpdateOp, Int, Tensor, TensorData, activation};
 use orbflow_network::features::N_FEATURES;
 use orbflow_network::neighbours::Neighbours;
-use orbflow_network::net::{LEAST_SQUARE, Sizes};
+use orbflow_network::net::Sizes;
 use orbflow_network::pyramid::{Level, Pyramid};
+use orbflow_network::relaxation::{BIAS, LEAST_SQUARE};
 
 use gated::gated_sum;
 
@@ -44,6 +45,8 @@ pub struct BurnNetwork {
     storeys: Vec<Storey>,
     norm: LayerNorm,
     head: Linear,
+    /// The gates of all relaxations; none without any.
+    gates: Option<Linear>,
 }
 
 impl Block {
@@ -83,6 +86,8 @@ impl BurnNetwork {
             head: LinearConfig::new(width, 3)
                 .with_initializer(small)
                 .init(device),
+            gates: (sizes.relaxations > 0)
+                .then(|| LinearConfig::new(width, 2 * sizes.relaxations).init(device)),
         }
     }
 
@@ -150,15 +155,33 @@ impl BurnNetwork {
                 .iter()
                 .fold(x, |x, block| block.forward(x, &level.graph));
         }
-        let radial = inputs[0].clone().narrow(1, 0, 3);
-        let radius = radial
-            .clone()
-            .powi_scalar(2)
-            .sum_dim(1)
-            .add_scalar(LEAST_SQUARE)
-            .sqrt();
-        radial / radius + self.head.forward(self.norm.forward(x))
+        let known = self.norm.forward(x);
+        let radial = unit(inputs[0].clone().narrow(1, 0, 3));
+        let places = radial + self.head.forward(known.clone());
+        match &self.gates {
+            Some(gates) => relaxed(places, gates.forward(known), &pyramid.levels[0].graph),
+            None => places,
+        }
     }
+}
+
+/// [`orbflow_network::relaxation::relaxed`] in burn.
+fn relaxed(mut places: Tensor<2>, gates: Tensor<2>, graph: &Arc<Neighbours>) -> Tensor<2> {
+    let [n, n_gates] = gates.dims();
+    let column = |i: usize| gates.clone().narrow(1, i, 1).expand([n, 3]);
+    for i in 0..n_gates / 2 {
+        let key = column(i).add_scalar(BIAS);
+        let from = unit(places);
+        let rows = vec![from.clone(), key, column(n_gates / 2 + i), from];
+        places = gated_sum(Tensor::cat(rows, 1), graph);
+    }
+    places
+}
+
+/// The directions of vectors, of a length below 1 near the centre.
+fn unit(vectors: Tensor<2>) -> Tensor<2> {
+    let squares = vectors.clone().powi_scalar(2).sum_dim(1);
+    vectors / squares.add_scalar(LEAST_SQUARE).sqrt()
 }
 
 /// The numbers of a tensor, by rows.
