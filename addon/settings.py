@@ -33,7 +33,7 @@ _MARKS = (
 )
 _MIRRORS = (
     ("OFF", "Off", "The two sides of a mesh need not be alike"),
-    ("AUTO", "Automatic", "Across the first axis in which every vertex is another's image, if there is one"),
+    ("AUTO", "Automatic", "Across the first axis, if any, in which every vertex has its image"),
     ("X", "X", "Across X; a mesh that is not symmetric is made so from the side of positive X"),
     ("Y", "Y", "Across Y; a mesh that is not symmetric is made so from the side of positive Y"),
     ("Z", "Z", "Across Z; a mesh that is not symmetric is made so from the side of positive Z"),

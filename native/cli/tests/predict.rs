@@ -52,9 +52,11 @@ fn predict_says_that_a_proposal_was_no_use_and_writes_the_report_alone() {
     let folder = Folder::new();
     let input = folder.write("ball.obj", &ball(""));
     let mut weights = Weights::shipped();
-    // The last three parameters are the bias of the head.
-    let last = weights.parameters.len() - 3;
-    weights.parameters[last..].copy_from_slice(&[6e4, 0.0, 0.0]);
+    // Before the gates, which come last, stands the bias of the head.
+    let sizes = &weights.header.sizes;
+    let gates = (sizes.width + 1) * 2 * sizes.relaxations;
+    let end = weights.parameters.len() - gates;
+    weights.parameters[end - 3..end].copy_from_slice(&[6e4, 0.0, 0.0]);
     let [path, output, report] = ["bad.orbflow", "out.obj", "r.json"].map(|n| folder.path(n));
     fs::write(&path, weights.to_bytes()).unwrap();
     let files = ["predict", &input, &output, "--weights", &path];
