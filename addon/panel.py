@@ -155,7 +155,7 @@ def _without_flow(reports: list[dict[str, Any]]) -> str:
 
 
 def _without_mirror(reports: list[dict[str, Any]]) -> str:
-    """Whether symmetry was asked for and could not be had, and why."""
+    """Which parts could not be made symmetric, and why the first."""
     return _refused(reports, "mirrored", "not symmetric")
 
 

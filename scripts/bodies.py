@@ -14,8 +14,8 @@ from pathlib import Path
 
 # Folders of details that change the outline; faces are too small to matter.
 PLACES = ("arms", "feet", "hands", "head", "hip", "legs", "neck", "pelvis", "stomach", "torso")
-# Which detail excludes which, by how their names end.
-OPPOSITES = (("-incr", "-decr"), ("-up", "-down"), ("-in", "-out"), ("-forward", "-backward"))
+# How the names of details end that exclude each other.
+ENDS = ("-incr", "-decr", "-up", "-down", "-in", "-out", "-forward", "-backward")
 ANCESTRIES = ("african", "asian", "caucasian")
 SEXES = ("female", "male")
 AGES = ("baby", "child", "old", "young")
@@ -64,28 +64,29 @@ def details(names: list[str]) -> list[list[tuple[str, str]]]:
             continue
         both = rest.removeprefix("l-").removeprefix("r-")
         stem = both
-        for ends in OPPOSITES:
-            for end in ends:
-                stem = stem.removesuffix(end)
+        for end in ENDS:
+            stem = stem.removesuffix(end)
         groups.setdefault(f"{folder}/{stem}", set()).add((folder, both))
     return [sorted(group) for _, group in sorted(groups.items())]
 
 
-def weights(kind: str, targets: dict[str, Target], chance: random.Random) -> dict[str, float]:
-    """Chooses the targets of a body and how much each counts."""
+def weights(
+    kind: str, names: list[str], groups: list[list[tuple[str, str]]], chance: random.Random
+) -> dict[str, float]:
+    """Chooses the targets of a body, of sorted names, and how much each counts."""
     _, sex, age = kind.split("-")
-    build = [n for n in targets if n.startswith(f"macrodetails/universal-{sex}-{age}-")]
-    chosen = {f"macrodetails/{kind}": 1.0, chance.choice(sorted(build)): chance.uniform(0.5, 1)}
+    build = [n for n in names if n.startswith(f"macrodetails/universal-{sex}-{age}-")]
+    chosen = {f"macrodetails/{kind}": 1.0, chance.choice(build): chance.uniform(0.5, 1)}
     for folder in ("height", "proportions"):
-        of = [n for n in targets if n.startswith(f"macrodetails/{folder}/{sex}-{age}-")]
+        of = [n for n in names if n.startswith(f"macrodetails/{folder}/{sex}-{age}-")]
         if of:
-            chosen[chance.choice(sorted(of))] = chance.uniform(0, 1)
-    for group in details(sorted(targets)):
+            chosen[chance.choice(of)] = chance.uniform(0, 1)
+    for group in groups:
         if chance.random() < 0.5:
             folder, detail = chance.choice(group)
             weight = chance.uniform(0, 1)
             for side in ("", "l-", "r-"):
-                if f"{folder}/{side}{detail}" in targets:
+                if f"{folder}/{side}{detail}" in names:
                     chosen[f"{folder}/{side}{detail}"] = weight
     return chosen
 
@@ -94,12 +95,14 @@ def bodies(folder: Path, most: int) -> Iterator[tuple[str, str]]:
     """The names of OBJ files and their texts."""
     vertices, faces = read_base(folder / "body.obj")
     targets = read_targets(folder / "targets.tar.xz", len(vertices))
+    names = sorted(targets)
+    groups = details(names)
     kinds = [f"{a}-{s}-{age}" for a in ANCESTRIES for s in SEXES for age in AGES]
     for i in range(most):
         kind = kinds[i % len(kinds)]
         chance = random.Random(i)
         moved = [list(v) for v in vertices]
-        for name, weight in weights(kind, targets, chance).items():
+        for name, weight in weights(kind, names, groups, chance).items():
             for index, move in targets[name]:
                 for axis in range(3):
                     moved[index][axis] += weight * move[axis]

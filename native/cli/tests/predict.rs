@@ -4,6 +4,7 @@ mod support;
 
 use std::fs;
 
+use orbflow_network::net::Sizes;
 use orbflow_network::weights::Weights;
 use serde_json::Value;
 use support::{Folder, ball, run};
@@ -53,9 +54,11 @@ fn predict_says_that_a_proposal_was_no_use_and_writes_the_report_alone() {
     let input = folder.write("ball.obj", &ball(""));
     let mut weights = Weights::shipped();
     // Before the gates, which come last, stands the bias of the head.
-    let sizes = &weights.header.sizes;
-    let gates = (sizes.width + 1) * 2 * sizes.relaxations;
-    let end = weights.parameters.len() - gates;
+    let without_gates = Sizes {
+        relaxations: 0,
+        ..weights.header.sizes.clone()
+    };
+    let end = without_gates.n_parameters().unwrap();
     weights.parameters[end - 3..end].copy_from_slice(&[6e4, 0.0, 0.0]);
     let [path, output, report] = ["bad.orbflow", "out.obj", "r.json"].map(|n| folder.path(n));
     fs::write(&path, weights.to_bytes()).unwrap();

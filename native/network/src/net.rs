@@ -13,7 +13,7 @@
 //! This is prediction alone, in plain loops and matrix products. Training has the same network in
 //! burn; a test there compares the two.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
 use crate::features::N_FEATURES;
@@ -21,7 +21,7 @@ use crate::gated::gated_sum;
 use crate::layers::{Linear, Norm, add, join};
 use crate::neighbours::Neighbours;
 use crate::pyramid::{Level, Pyramid};
-use crate::relaxation::{relaxed, unit, vectors};
+use crate::relaxation::{relaxed, unit};
 
 /// The sizes of a network.
 #[derive(Clone, PartialEq, Eq, Debug, Serialize, Deserialize)]
@@ -171,6 +171,12 @@ fn moved(features: &[f32], offsets: &[f32]) -> Vec<f32> {
         [0, 1, 2].map(|i| direction[i] + offset[i])
     };
     rows.flat_map(place).collect()
+}
+
+/// Rows of three numbers as vectors.
+fn vectors(rows: &[f32]) -> Vec<DVec3> {
+    let rows = rows.chunks_exact(3);
+    rows.map(|row| Vec3::from_slice(row).as_dvec3()).collect()
 }
 
 impl Block {

@@ -9,7 +9,7 @@
 //! error of a triangle's width folds it. Sums of positive weights shrink such errors with the
 //! triangles, as those of an embedding by means of neighbours do (Tutte 1963; Floater 2003).
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 use crate::gated::gated_sum;
 use crate::neighbours::Neighbours;
@@ -40,12 +40,6 @@ pub fn relaxed(mut places: Vec<f32>, gates: &[f32], graph: &Neighbours) -> Vec<f
 pub fn unit(vector: &[f32]) -> [f32; 3] {
     let v = Vec3::from_slice(vector);
     (v / (v.length_squared() + LEAST_SQUARE).sqrt()).to_array()
-}
-
-/// Rows of three numbers as vectors.
-pub fn vectors(rows: &[f32]) -> Vec<DVec3> {
-    let rows = rows.chunks_exact(3);
-    rows.map(|row| Vec3::from_slice(row).as_dvec3()).collect()
 }
 
 #[cfg(test)]

@@ -138,8 +138,7 @@ impl Weights {
 
     /// The sum of the weights that every build carries.
     pub fn shipped_sum() -> u64 {
-        let sum = SHIPPED[SUM_AT..FRONT].iter().rev();
-        sum.fold(0, |sum, &byte| sum << 8 | u64::from(byte))
+        u64::from_le_bytes(SHIPPED[SUM_AT..FRONT].try_into().expect("eight bytes"))
     }
 
     /// Header and parameters as files have them.

@@ -14,6 +14,12 @@ use crate::mesh::{VertexId, VertexMap};
 /// thin hull turn quads over.
 const MOST_ASKED: f64 = 0.3;
 
+/// By how much a length is asked to grow towards the mean at once, or to shrink.
+pub(super) fn asked(mean: f64, length: f64) -> f64 {
+    let most = MOST_ASKED * mean;
+    (mean - length).clamp(-most, most)
+}
+
 /// The edges of a sheet as springs.
 pub(super) struct Springs {
     stars: Stars,
@@ -46,8 +52,7 @@ impl Springs {
             let length = edge.length();
             let way = edge / length.max(f64::MIN_POSITIVE);
             let way = way - here.normal * here.normal.dot(way);
-            let most = MOST_ASKED * self.mean;
-            let gap = (self.mean - length).clamp(-most, most) + way.dot(steps[u]);
+            let gap = asked(self.mean, length) + way.dot(steps[u]);
             (way, gap, self.weight)
         })
     }

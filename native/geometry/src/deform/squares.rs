@@ -13,10 +13,9 @@ use glam::DVec3;
 
 use super::follow::nearest_arm;
 use super::sheet::{Face, Sheet};
+use super::springs::asked;
 use crate::mesh::{FaceMap, VertexId, VertexMap};
 
-/// No square is asked to grow or shrink by more than this share of the mean at once, as springs.
-const MOST_ASKED: f64 = 0.3;
 /// Share of the way to the arms of the field that squares turn at once: at 0 equal edges leave the
 /// field by half a degree, at 1 they are a thirtieth less equal.
 const TURN: f64 = 0.35;
@@ -36,8 +35,7 @@ impl Squares {
             let points = array::from_fn(|i| sheet.position(face.corner(0, i)));
             let (spoke, normal) = spoke(&points);
             let length = spoke.length();
-            let most = MOST_ASKED * mean;
-            let wanted = length + (mean - length).clamp(-most, most);
+            let wanted = length + asked(mean, length);
             let sine = sine_to_arms(sheet, (face, crosses), normal.cross(spoke) - spoke, normal);
             let turned = spoke + normal.cross(spoke) * (TURN * sine);
             let spoke = turned.normalize_or_zero() * wanted;

@@ -42,16 +42,6 @@ impl Mirror {
             Self::Z => "z",
         }
     }
-
-    /// The axis that is named, if one is.
-    fn axis(self) -> Option<usize> {
-        match self {
-            Self::Off | Self::Auto => None,
-            Self::X => Some(0),
-            Self::Y => Some(1),
-            Self::Z => Some(2),
-        }
-    }
 }
 
 /// Through what a plane of symmetry goes.
@@ -120,16 +110,18 @@ pub fn find(
     wanted: Mirror,
     progress: &Progress<'_>,
 ) -> Result<Option<Plane>, Cancelled> {
-    match (wanted, wanted.axis()) {
-        (_, Some(axis)) => Ok(Some(named(mesh, frame, axis, progress)?)),
-        (Mirror::Auto, None) => exact(mesh, (input, frame), progress),
-        _ => Ok(None),
-    }
+    let axis = match wanted {
+        Mirror::Off => return Ok(None),
+        Mirror::Auto => return exact(mesh, (input, frame), progress),
+        Mirror::X => 0,
+        Mirror::Y => 1,
+        Mirror::Z => 2,
+    };
+    named(mesh, frame, axis, progress).map(Some)
 }
 
 /// The planes across an axis that may be taken: through the origin, through the middle of the box.
-fn planes(mesh: &TriangleMesh, frame: &Frame, axis: usize) -> [(Through, f64); 2] {
-    let [low, high] = bounds(mesh.positions());
+fn planes([low, high]: [DVec3; 2], frame: &Frame, axis: usize) -> [(Through, f64); 2] {
     [Through::Origin, Through::Middle].map(|through| {
         let at = match through {
             Through::Origin => frame.enter(&[DVec3::ZERO])[0][axis],
@@ -146,7 +138,8 @@ fn exact(
     progress: &Progress<'_>,
 ) -> Result<Option<Plane>, Cancelled> {
     let mean = mesh.positions().iter().sum::<DVec3>() / mesh.n_vertices() as f64;
-    let planes = (0..3).flat_map(|axis| planes(mesh, frame, axis).map(|plane| (axis, plane)));
+    let corners = bounds(mesh.positions());
+    let planes = (0..3).flat_map(|axis| planes(corners, frame, axis).map(|plane| (axis, plane)));
     let planes = planes.filter(|&(axis, (_, at))| (mean[axis] - at).abs() <= MOST_LOPSIDED);
     let planes: Vec<_> = planes.collect();
     if planes.is_empty() {
@@ -173,7 +166,7 @@ fn named(
 ) -> Result<Plane, Cancelled> {
     let [low, high] = bounds(mesh.positions());
     let tree = Bvh::build_of_mesh(mesh, progress)?;
-    let planes = planes(mesh, frame, axis);
+    let planes = planes([low, high], frame, axis);
     let mut found: Option<(f64, Plane)> = None;
     for (through, at) in planes {
         let is_far = (low[axis] + high[axis] - 2.0 * at).abs() > MOST_DEVIATION;
