@@ -159,14 +159,14 @@ impl BurnNetwork {
         let radial = unit(inputs[0].clone().narrow(1, 0, 3));
         let places = radial + self.head.forward(known.clone());
         match &self.gates {
-            Some(gates) => relaxed(places, gates.forward(known), &pyramid.levels[0].graph),
+            Some(gates) => relaxed(places, &gates.forward(known), &pyramid.levels[0].graph),
             None => places,
         }
     }
 }
 
 /// [`orbflow_network::relaxation::relaxed`] in burn.
-fn relaxed(mut places: Tensor<2>, gates: Tensor<2>, graph: &Arc<Neighbours>) -> Tensor<2> {
+fn relaxed(mut places: Tensor<2>, gates: &Tensor<2>, graph: &Arc<Neighbours>) -> Tensor<2> {
     let [n, n_gates] = gates.dims();
     let column = |i: usize| gates.clone().narrow(1, i, 1).expand([n, 3]);
     for i in 0..n_gates / 2 {
