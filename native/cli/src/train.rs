@@ -9,9 +9,10 @@ use orbflow_training::curve::draw_log;
 use orbflow_training::engine::{Engine, EngineError, name_of};
 use orbflow_training::evaluate::{Baselines, baselines};
 use orbflow_training::load::{LoadError, load};
-use orbflow_training::run::{Settings, SettingsError, TrainError, Training};
+use orbflow_training::run::{TrainError, Training};
 use orbflow_training::sample::{Sample, SampleError};
 use orbflow_training::set::{Set, SetError};
+use orbflow_training::settings::{Settings, SettingsError};
 use serde::Serialize;
 use thiserror::Error;
 

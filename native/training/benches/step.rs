@@ -2,8 +2,9 @@
 
 use divan::Bencher;
 use orbflow_training::engine::Engine;
-use orbflow_training::run::{Settings, Training};
+use orbflow_training::run::Training;
 use orbflow_training::sample::Sample;
+use orbflow_training::settings::Settings;
 use orbflow_training::shapes::shape;
 
 fn main() {

@@ -22,6 +22,7 @@ pub mod run;
 pub mod sample;
 mod schedule;
 pub mod set;
+pub mod settings;
 pub mod shapes;
 mod sources;
 pub mod thesis;

@@ -5,16 +5,17 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use burn::module::Module;
-use burn::optim::{GradientsParams, ModuleOptimizer};
+use burn::optim::{GradientsAccumulator, GradientsParams, ModuleOptimizer};
 use burn::store::{ModuleRecord, RecordError};
 use burn::tensor::Device;
 use orbflow_geometry::progress::{Cancelled, Progress};
 use orbflow_geometry::random::Random;
 use orbflow_network::features::N_FEATURES;
 use orbflow_network::frame::half_turns;
-use orbflow_network::net::{Network, Sizes};
+use orbflow_network::net::Network;
 use orbflow_network::pyramid::Pyramid;
-use orbflow_network::weights::{Header, ReadWeightsError, Weights};
+use orbflow_network::weights::{Header, Weights};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -25,107 +26,7 @@ use crate::net::BurnNetwork;
 use crate::optimizer::optimizer;
 use crate::sample::Sample;
 use crate::schedule::one_cycle;
-
-/// How a network is trained. What a file of settings leaves out has its default.
-#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Settings {
-    /// The network: `[sizes]` with width, levels and blocks.
-    pub sizes: Sizes,
-    /// How many steps the whole run has; the rate follows from it.
-    pub n_steps: usize,
-    /// How many shapes a step sees.
-    pub batch: usize,
-    /// The highest learning rate.
-    pub rate: f64,
-    /// Where random choices start.
-    pub seed: u64,
-    /// Steps between checkpoints, at which the held-out shapes are measured too.
-    pub interval: usize,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            sizes: Sizes::default(),
-            n_steps: 20_000,
-            batch: 6,
-            rate: 2e-3,
-            seed: 0,
-            interval: 500,
-        }
-    }
-}
-
-/// Why settings cannot be used.
-#[derive(Clone, PartialEq, Debug, Error)]
-pub enum SettingsError {
-    /// The text is no such file.
-    #[error("{0}")]
-    Toml(#[from] toml::de::Error),
-    /// A number is out of its range.
-    #[error("{name} = {found}; it must be {wanted}")]
-    Range {
-        /// Which.
-        name: &'static str,
-        /// What it is.
-        found: String,
-        /// What it may be.
-        wanted: &'static str,
-    },
-    /// No weights file could hold the network.
-    #[error("sizes: {0}")]
-    Sizes(#[from] ReadWeightsError),
-}
-
-impl Settings {
-    /// Reads settings as TOML.
-    ///
-    /// # Errors
-    /// [`SettingsError`], with the line of the text.
-    pub fn from_toml(text: &str) -> Result<Self, SettingsError> {
-        let settings: Self = toml::from_str(text)?;
-        settings.check()?;
-        Ok(settings)
-    }
-
-    fn check(&self) -> Result<(), SettingsError> {
-        let Self {
-            n_steps,
-            batch,
-            rate,
-            interval,
-            ..
-        } = self;
-        for (name, found) in [
-            ("n_steps", n_steps),
-            ("batch", batch),
-            ("interval", interval),
-        ] {
-            if *found == 0 {
-                return Err(SettingsError::Range {
-                    name,
-                    found: found.to_string(),
-                    wanted: "1 or more",
-                });
-            }
-        }
-        // More than 1 is what burn refuses; it would also diverge.
-        if !(*rate > 0.0 && *rate <= 1.0) {
-            return Err(SettingsError::Range {
-                name: "rate",
-                found: rate.to_string(),
-                wanted: "above 0 and at most 1",
-            });
-        }
-        let header = Header {
-            sizes: self.sizes.clone(),
-            n_features: N_FEATURES,
-            provenance: String::new(),
-        };
-        Ok(header.check()?)
-    }
-}
+use crate::settings::Settings;
 
 /// A network on its way.
 pub struct Training {
@@ -245,20 +146,43 @@ impl Training {
 
     /// One step on some samples, each turned by one of the half turns; returns the loss.
     pub fn learn(&mut self, samples: &[&Sample], turns: &[usize]) -> f64 {
-        let turned: Vec<Pyramid> = samples
-            .iter()
-            .zip(turns)
-            .map(|(sample, &turn)| sample.prepared.turned(half_turns()[turn]).pyramid)
-            .collect();
-        let joined = Pyramid::joined(&turned.iter().collect::<Vec<_>>());
-        let faces = Faces::new(samples, &self.device);
-        let loss = faces.loss(self.network.forward(&joined, &self.device));
-        let value = f64::from(loss.clone().into_scalar::<f32>());
-        let gradients = GradientsParams::from_grads(loss.backward(), &self.network);
+        let (loss, gradients) = self.gradients(samples, turns);
         let rate = self.rate();
         self.network = self.optimizer.step(rate, self.network.clone(), gradients);
         self.step += 1;
-        value
+        loss
+    }
+
+    /// The mean loss of some samples and its gradients. On flex every sample is a task of its own,
+    /// and sums are in the order of the samples, so that any number of threads finds the same bits;
+    /// other engines are handed all at once.
+    fn gradients(&self, samples: &[&Sample], turns: &[usize]) -> (f64, GradientsParams) {
+        let is_flex = self.device.clone().inner() == Device::flex();
+        let at_once = if is_flex { 1 } else { samples.len() };
+        let tasks = samples.par_chunks(at_once).zip(turns.par_chunks(at_once));
+        let parts = tasks.map(|(some, turns)| {
+            let turned: Vec<Pyramid> = some
+                .iter()
+                .zip(turns)
+                .map(|(sample, &turn)| sample.prepared.turned(half_turns()[turn]).pyramid)
+                .collect();
+            let joined = Pyramid::joined(&turned.iter().collect::<Vec<_>>());
+            // Of its own: burn keeps all that hangs on the same parameters in one locked graph.
+            let network = self.network.clone().fork(&self.device);
+            let loss = Faces::new(some, &self.device).loss(network.forward(&joined, &self.device));
+            let loss = loss.mul_scalar(some.len() as f32 / samples.len() as f32);
+            let value = f64::from(loss.clone().into_scalar::<f32>());
+            (
+                value,
+                GradientsParams::from_grads(loss.backward(), &network),
+            )
+        });
+        let mut sum = (0.0, GradientsAccumulator::new());
+        for (loss, gradients) in parts.collect::<Vec<_>>() {
+            sum.0 += loss;
+            sum.1.accumulate(&self.network, gradients);
+        }
+        (sum.0, sum.1.grads())
     }
 
     /// Runs to the end, logging and keeping a checkpoint every interval.

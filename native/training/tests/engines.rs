@@ -14,8 +14,9 @@ use orbflow_network::pyramid::Pyramid;
 use orbflow_training::engine::Engine;
 use orbflow_training::loss::Faces;
 use orbflow_training::net::{BurnNetwork, numbers};
-use orbflow_training::run::{Line, Settings, TrainError, Training};
+use orbflow_training::run::{Line, TrainError, Training};
 use orbflow_training::sample::Sample;
+use orbflow_training::settings::Settings;
 use orbflow_training::shapes::shape;
 
 fn settings() -> Settings {

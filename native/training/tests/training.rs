@@ -10,8 +10,9 @@ use orbflow_network::net::Sizes;
 use orbflow_network::weights::Weights;
 use orbflow_training::evaluate::evaluate;
 use orbflow_training::loss::Faces;
-use orbflow_training::run::{Settings, Training};
+use orbflow_training::run::Training;
 use orbflow_training::sample::Sample;
+use orbflow_training::settings::Settings;
 use orbflow_training::shapes::{march, shape};
 
 fn samples(n: u64, levels: &[usize]) -> Vec<Sample> {

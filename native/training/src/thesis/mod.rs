@@ -30,8 +30,8 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::net::numbers;
-use crate::run::SettingsError;
 use crate::sample::Sample;
+use crate::settings::SettingsError;
 use net::{N_INPUTS, ThesisNetwork};
 
 /// Of the icosphere: 492 points.
