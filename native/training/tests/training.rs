@@ -70,6 +70,27 @@ fn one_batch_is_learnt_to_the_energy_of_the_solver() {
 }
 
 #[test]
+fn any_number_of_threads_trains_to_the_same_bits() {
+    let settings = Settings {
+        batch: 3,
+        ..small()
+    };
+    let samples = samples(3, &settings.sizes.levels);
+    let batch: Vec<&Sample> = samples.iter().collect();
+    let after = |n: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(n);
+        let mut training = Training::new(settings.clone(), &Device::flex());
+        pool.build().unwrap().install(|| {
+            for turn in 0..4 {
+                training.learn(&batch, &[turn, 0, 3]);
+            }
+        });
+        training.weights("").parameters
+    };
+    assert_eq!(after(1), after(3));
+}
+
+#[test]
 fn a_resumed_run_equals_an_uninterrupted_one() {
     let (settings, quiet) = (small(), Progress::none());
     let samples = samples(3, &settings.sizes.levels);
