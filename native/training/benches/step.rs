@@ -1,4 +1,5 @@
-//! A training step of six shapes and the default network, on every engine of this build.
+//! A training step of the default network on a few and on many shapes, on every engine of this
+//! build.
 
 use divan::Bencher;
 use orbflow_training::engine::Engine;
@@ -21,10 +22,16 @@ const ENGINES: &[Engine] = &[
     Engine::Cuda,
 ];
 
-#[divan::bench(args = ENGINES.iter().copied(), sample_count = 20)]
-fn step(bencher: Bencher, engine: Engine) {
+fn cases() -> impl Iterator<Item = (Engine, usize)> {
+    let sizes = [6, 48];
+    ENGINES
+        .iter()
+        .flat_map(move |&engine| sizes.map(|n| (engine, n)))
+}
+
+#[divan::bench(args = cases(), sample_count = 10)]
+fn step(bencher: Bencher, (engine, n): (Engine, usize)) {
     let settings = Settings::default();
-    let n = settings.batch;
     let sample = |seed| Sample::new(String::new(), shape(seed), &settings.sizes.levels);
     let samples = (0..n as u64).map(|seed| sample(seed).expect("made shapes are closed"));
     let samples: Vec<Sample> = samples.collect();

@@ -5,8 +5,9 @@
 //! distortion will do. A map of degree 1 covers the sphere once, folds counted negative; what a map
 //! of a sample lacks of that is added squared.
 
-use burn::tensor::{Device, IndexingUpdateOp, Int, Tensor, TensorData};
+use burn::tensor::{Device, Tensor, TensorData};
 
+use crate::net::gather::{Gather, gathered};
 use crate::sample::Sample;
 
 /// Ratios below about this are folds, or nearly. They keep a gradient: the barrier goes on, ever
@@ -19,28 +20,28 @@ const COVERAGE: f32 = 10.0;
 /// The faces of some samples side by side, as tensors.
 #[derive(Clone, Debug)]
 pub struct Faces {
-    corners: [Tensor<1, Int>; 3],
+    corners: [Gather; 3],
     dirichlet: Tensor<2>,
     per_area: Tensor<2>,
     /// The share of each face in the surface of its sample.
     share: Tensor<2>,
-    /// Which sample each face is of.
-    sample: Tensor<1, Int>,
+    /// The faces of each sample.
+    of_samples: Gather,
     n_samples: usize,
 }
 
 impl Faces {
     /// The faces of samples whose pyramids are joined in the same order.
     pub fn new(samples: &[&Sample], device: &Device) -> Self {
-        let mut corners = [const { Vec::<i64>::new() }; 3];
+        let mut corners = [const { Vec::new() }; 3];
         let mut n_before = 0;
         for sample in samples {
             for face in sample.mesh.faces() {
                 for (list, v) in corners.iter_mut().zip(face) {
-                    list.push(n_before + i64::from(v.0));
+                    list.push(n_before + v.0);
                 }
             }
-            n_before += sample.mesh.n_vertices() as i64;
+            n_before += sample.mesh.n_vertices() as u32;
         }
         let rests = || samples.iter().flat_map(|sample| &sample.rests);
         let n = rests().count();
@@ -48,14 +49,14 @@ impl Faces {
             Tensor::<2>::from_data(TensorData::new(values, [n, width]), device)
         };
         let owners = samples.iter().enumerate();
-        let owners = owners.flat_map(|(i, sample)| vec![i as i64; sample.rests.len()]);
-        let owners: Vec<i64> = owners.collect();
+        let owners = owners.flat_map(|(i, sample)| vec![i as u32; sample.rests.len()]);
+        let owners = Gather::of_rows(owners.collect(), samples.len());
         Self {
-            corners: corners.map(|list| Tensor::from_data(TensorData::new(list, [n]), device)),
+            corners: corners.map(|list| Gather::of_rows(list, n_before as usize)),
             dirichlet: column(rests().flat_map(|rest| rest.dirichlet).collect(), 3),
             per_area: column(rests().map(|rest| rest.per_area).collect(), 1),
             share: column(rests().map(|rest| rest.share).collect(), 1),
-            sample: Tensor::from_data(TensorData::new(owners, [n]), device),
+            of_samples: owners.reversed(),
             n_samples: samples.len(),
         }
     }
@@ -64,10 +65,7 @@ impl Faces {
     pub fn loss(&self, directions: Tensor<2>) -> Tensor<1> {
         let length = squared(directions.clone()).add_scalar(1e-12).sqrt();
         let sphere = directions / length;
-        let [p, q, r] = self
-            .corners
-            .clone()
-            .map(|ids| sphere.clone().select(0, ids));
+        let [p, q, r] = [0, 1, 2].map(|i| gathered(sphere.clone(), &self.corners[i]));
         let opposite = [(&q, &r), (&r, &p), (&p, &q)].map(|(a, b)| squared(a.clone() - b.clone()));
         let density = (Tensor::cat(opposite.to_vec(), 1) * self.dirichlet.clone()).sum_dim(1);
         let ratio = determinant([p, q, r]) * self.per_area.clone();
@@ -77,12 +75,7 @@ impl Faces {
         let squeezed = density.clone().add_scalar(2.0 * LEAST_RATIO) * inverse.clone() * inverse;
         let distortion = ((density + squeezed).log1p() * self.share.clone()).sum();
         let n = self.n_samples as f32;
-        let covered = Tensor::zeros([self.n_samples, 1], &ratio.device()).select_assign(
-            0,
-            self.sample.clone(),
-            ratio * self.share.clone(),
-            IndexingUpdateOp::Add,
-        );
+        let covered = gathered(ratio * self.share.clone(), &self.of_samples);
         let missing = covered.neg().add_scalar(1.0);
         (distortion + squared(missing).sum().mul_scalar(COVERAGE)).div_scalar(n)
     }

@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
-use burn::tensor::{Device, Tensor, TensorData};
+use burn::tensor::{Device, IndexingUpdateOp, Int, Tensor, TensorData};
 use orbflow_geometry::random::Random;
 use orbflow_geometry::sphere::icosphere;
 use orbflow_network::neighbours::Neighbours;
 use orbflow_network::net::{Network, Sizes};
 use orbflow_training::net::gated::{composed, gated_sum};
+use orbflow_training::net::gather::{Gather, gathered};
 use orbflow_training::net::{BurnNetwork, numbers};
 use orbflow_training::sample::Sample;
 use orbflow_training::shapes::shape;
@@ -32,9 +33,9 @@ fn weighted(
     operation: impl Fn(Tensor<2>) -> Tensor<2>,
 ) -> (f32, Vec<f32>) {
     let device = Device::flex().autodiff();
-    let n = weights.len() / WIDTH;
     let tensor = |values: &[f32], width: usize| {
-        Tensor::<2>::from_data(TensorData::new(values.to_vec(), [n, width]), &device)
+        let shape = [values.len() / width, width];
+        Tensor::<2>::from_data(TensorData::new(values.to_vec(), shape), &device)
     };
     let rows = tensor(rows, 4 * WIDTH).require_grad();
     let sum = (operation(rows.clone()) * tensor(weights, WIDTH)).sum();
@@ -82,6 +83,35 @@ fn the_gradient_is_that_of_central_differences() {
             gradient[at]
         );
     }
+}
+
+#[test]
+fn gathered_rows_and_sums_are_what_burn_selects_and_adds() {
+    // Some rows twice, some never; the width is that of the rows of `weighted`.
+    let (ids, n) = ([3u32, 0, 3, 5, 1, 3, 7], 8);
+    let gather = Gather::of_rows(ids.to_vec(), n);
+    let device = Device::flex();
+    let numbers_of = TensorData::new(ids.map(i64::from).to_vec(), [ids.len()]);
+    let at = Tensor::<1, Int>::from_data(numbers_of, &device);
+    let narrow = |rows: Tensor<2>| rows.narrow(1, 0, WIDTH);
+    let (rows, weights) = (random(n * 4 * WIDTH, 6), random(ids.len() * WIDTH, 7));
+    let found = weighted(&rows, &weights, |rows| gathered(narrow(rows), &gather));
+    let wanted = weighted(&rows, &weights, |rows| narrow(rows).select(0, at.clone()));
+    assert_eq!(found, wanted);
+
+    let (rows, weights) = (random(ids.len() * 4 * WIDTH, 8), random(n * WIDTH, 9));
+    let found = weighted(&rows, &weights, |rows| {
+        gathered(narrow(rows), &gather.reversed())
+    });
+    let wanted = weighted(&rows, &weights, |rows| {
+        let zeros = Tensor::zeros([n, WIDTH], &rows.device());
+        zeros.select_assign(0, at.clone(), narrow(rows), IndexingUpdateOp::Add)
+    });
+    assert_eq!(found, wanted);
+    assert_eq!(
+        gather.reversed().counts(),
+        [1.0, 1.0, 0.0, 3.0, 0.0, 1.0, 0.0, 1.0]
+    );
 }
 
 #[test]

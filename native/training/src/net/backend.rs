@@ -1,4 +1,4 @@
-//! The gated sum as an operation of burn's backends.
+//! What a graph network needs of burn's backends beside burn's own operations.
 #![cfg_attr(
     feature = "ndarray",
     expect(
@@ -10,10 +10,12 @@
 use std::sync::Arc;
 
 use burn::backend::tensor::FloatTensor;
-use burn::backend::{Backend, Flex, backend_extension};
+use burn::backend::{Backend, Flex, TensorMetadata, backend_extension};
 use burn::tensor::TensorData;
 use orbflow_network::gated as kernel;
 use orbflow_network::neighbours::Neighbours;
+
+use super::gather::Gather;
 
 type FlexTensor = <Flex as burn::backend::BackendTypes>::FloatTensorPrimitive;
 
@@ -24,7 +26,7 @@ type FlexTensor = <Flex as burn::backend::BackendTypes>::FloatTensorPrimitive;
     Cube: cfg(any(feature = "wgpu", feature = "cuda")),
     Autodiff
 )]
-pub trait GatedOps: Backend {
+pub trait GraphOps: Backend {
     /// See [`kernel::gated_sum`].
     fn gated_sum(rows: FloatTensor<Self>, graph: Arc<Neighbours>) -> FloatTensor<Self>;
 
@@ -34,6 +36,9 @@ pub trait GatedOps: Backend {
         by_sum: FloatTensor<Self>,
         graph: Arc<Neighbours>,
     ) -> FloatTensor<Self>;
+
+    /// See [`super::gather::gathered`].
+    fn gathered(rows: FloatTensor<Self>, gather: Gather) -> FloatTensor<Self>;
 }
 
 /// How many rows there are, and the width of each of the four vectors in one.
@@ -42,7 +47,7 @@ pub(super) fn n_and_width(rows: &[f32], graph: &Neighbours) -> [usize; 2] {
     [n, rows.len() / n / 4]
 }
 
-impl GatedOps for Flex {
+impl GraphOps for Flex {
     fn gated_sum(rows: FlexTensor, graph: Arc<Neighbours>) -> FlexTensor {
         let rows = rows.to_contiguous();
         let rows = rows.as_slice::<f32>().expect("the network is f32");
@@ -63,6 +68,16 @@ impl GatedOps for Flex {
         let by_rows = kernel::gated_sum_backward(rows, by_sum, &graph, width);
         FlexTensor::from_data(TensorData::new(by_rows, [n, 4 * width]))
     }
+
+    fn gathered(rows: FlexTensor, gather: Gather) -> FlexTensor {
+        let rows = rows.to_contiguous();
+        let width = rows.shape()[1];
+        let sums = gather
+            .to
+            .sums(rows.as_slice().expect("the network is f32"), width);
+        let n = sums.len() / width;
+        FlexTensor::from_data(TensorData::new(sums, [n, width]))
+    }
 }
 
 mod autodiff {
@@ -71,12 +86,12 @@ mod autodiff {
     use burn::backend::autodiff::grads::Gradients;
     use burn::backend::autodiff::ops::{Backward, Ops, OpsKind, unary};
 
-    use super::{Arc, Backend, FloatTensor, GatedOps, Neighbours};
+    use super::{Arc, Backend, FloatTensor, Gather, GraphOps, Neighbours};
 
     #[derive(Debug)]
     struct GatedSum;
 
-    impl<B: Backend + GatedOps> Backward<B, 1> for GatedSum {
+    impl<B: Backend + GraphOps> Backward<B, 1> for GatedSum {
         type State = (FloatTensor<B>, Arc<Neighbours>);
 
         fn backward(self, ops: Ops<Self::State, 1>, grads: &mut Gradients, _: &mut Checkpointer) {
@@ -87,7 +102,21 @@ mod autodiff {
         }
     }
 
-    impl<B: Backend + GatedOps, C: CheckpointStrategy> GatedOps for Autodiff<B, C> {
+    #[derive(Debug)]
+    struct Gathered;
+
+    impl<B: Backend + GraphOps> Backward<B, 1> for Gathered {
+        type State = Gather;
+
+        fn backward(self, ops: Ops<Gather, 1>, grads: &mut Gradients, _: &mut Checkpointer) {
+            let back = ops.state.reversed();
+            unary::<B, _>(ops.parents, ops.node, grads, |by_sums| {
+                B::gathered(by_sums, back)
+            });
+        }
+    }
+
+    impl<B: Backend + GraphOps, C: CheckpointStrategy> GraphOps for Autodiff<B, C> {
         fn gated_sum(rows: FloatTensor<Self>, graph: Arc<Neighbours>) -> FloatTensor<Self> {
             let (rows, node) = rows.into_parts();
             match GatedSum.prepare::<C>([node]).compute_bound().stateful() {
@@ -105,6 +134,16 @@ mod autodiff {
             _: Arc<Neighbours>,
         ) -> FloatTensor<Self> {
             unreachable!("the backward pass runs on the inner backend: no second derivatives")
+        }
+
+        fn gathered(rows: FloatTensor<Self>, gather: Gather) -> FloatTensor<Self> {
+            let (rows, node) = rows.into_parts();
+            match Gathered.prepare::<C>([node]).compute_bound().stateful() {
+                OpsKind::Tracked(tracked) => {
+                    tracked.finish(gather.clone(), B::gathered(rows, gather))
+                }
+                OpsKind::UnTracked(untracked) => untracked.finish(B::gathered(rows, gather)),
+            }
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The gated sum on GPUs, as kernels of `CubeCL`, with a thread for each column of each row.
+//! Graphs on GPUs, as kernels of `CubeCL`, with a thread for each column of each row.
 //!
 //! As in [`orbflow_network::gated`], a thread reads neighbours and writes only what is its own: no
 //! sum is shared, so the same device finds the same bits again.
@@ -13,16 +13,17 @@ use burn::cubecl::{self, calculate_cube_count_elemwise};
 use burn::tensor::{FloatDType, TensorData};
 use orbflow_network::neighbours::Neighbours;
 
-use super::backend::GatedOps;
+use super::backend::GraphOps;
+use super::gather::Gather;
 
 type CubeTensor = FloatTensor<Cube>;
 
-impl GatedOps for Cube {
+impl GraphOps for Cube {
     fn gated_sum(rows: CubeTensor, graph: Arc<Neighbours>) -> CubeTensor {
         let n = graph.n_vertices();
         let width = rows.meta.shape()[1] / 4;
         let sum = Self::float_empty([n, width].into(), &rows.device, FloatDType::F32);
-        let [starts, others] = table(&graph, &rows).map(CubeTensor::into_buffer_arg);
+        let [starts, others] = lists(graph.table(), &rows).map(CubeTensor::into_buffer_arg);
         let threads = CubeDim::new(&rows.client, n * width);
         sum_kernel::launch(
             &sum.client,
@@ -44,7 +45,7 @@ impl GatedOps for Cube {
         let n = graph.n_vertices();
         let width = rows.meta.shape()[1] / 4;
         let by_rows = Self::float_empty([n, 4 * width].into(), &rows.device, FloatDType::F32);
-        let [starts, others] = table(&graph, &rows).map(CubeTensor::into_buffer_arg);
+        let [starts, others] = lists(graph.table(), &rows).map(CubeTensor::into_buffer_arg);
         let threads = CubeDim::new(&rows.client, n * width);
         backward_kernel::launch(
             &by_rows.client,
@@ -58,11 +59,30 @@ impl GatedOps for Cube {
         );
         by_rows
     }
+
+    fn gathered(rows: CubeTensor, gather: Gather) -> CubeTensor {
+        let table = &*gather.to;
+        let (n, width) = (table.starts.len() - 1, rows.meta.shape()[1]);
+        let sums = Self::float_empty([n, width].into(), &rows.device, FloatDType::F32);
+        let lists = lists([&table.starts, &table.rows], &rows);
+        let [starts, others] = lists.map(CubeTensor::into_buffer_arg);
+        let threads = CubeDim::new(&rows.client, n * width);
+        gather_kernel::launch(
+            &sums.client,
+            calculate_cube_count_elemwise(&rows.client, n * width, threads),
+            threads,
+            rows.into_tensor_arg(),
+            starts,
+            others,
+            sums.clone().into_tensor_arg(),
+        );
+        sums
+    }
 }
 
-/// Where the neighbours of each vertex start, and all neighbours, beside some rows.
-fn table(graph: &Neighbours, rows: &CubeTensor) -> [IntTensor<Cube>; 2] {
-    graph.table().map(|ids| {
+/// Where each list starts, and all lists, beside some rows.
+fn lists(table: [&[u32]; 2], rows: &CubeTensor) -> [IntTensor<Cube>; 2] {
+    table.map(|ids| {
         let n = ids.len();
         Cube::int_from_data(TensorData::new(ids.to_vec(), [n]), &rows.device)
     })
@@ -93,6 +113,20 @@ fn sum_kernel(rows: &Tensor<f32>, starts: &[u32], others: &[u32], sum: &mut Tens
         }
         let place = v * sum.stride(0) + c * sum.stride(1);
         sum[place] = total;
+    }
+}
+
+#[cube(launch)]
+fn gather_kernel(rows: &Tensor<f32>, starts: &[u32], others: &[u32], sums: &mut Tensor<f32>) {
+    let width = sums.shape(1);
+    let (v, c) = (ABSOLUTE_POS / width, ABSOLUTE_POS % width);
+    if v < sums.shape(0) {
+        let mut total = 0.0f32;
+        for i in starts[v]..starts[v + 1] {
+            total += at(rows, others[i as usize] as usize, c);
+        }
+        let place = v * sums.stride(0) + c * sums.stride(1);
+        sums[place] = total;
     }
 }
 

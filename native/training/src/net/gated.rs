@@ -9,7 +9,7 @@ use burn::backend::Dispatch;
 use burn::tensor::{IndexingUpdateOp, Int, Tensor, TensorData, activation};
 use orbflow_network::neighbours::Neighbours;
 
-use super::backend::GatedOps;
+use super::backend::GraphOps;
 
 /// The gated sum over rows [self | key | query | value]; a quarter as wide as they are.
 pub fn gated_sum(rows: Tensor<2>, graph: &Arc<Neighbours>) -> Tensor<2> {

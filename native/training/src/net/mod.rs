@@ -6,6 +6,7 @@ mod backend;
 #[cfg(any(feature = "wgpu", feature = "cuda"))]
 mod cube;
 pub mod gated;
+pub mod gather;
 #[cfg(feature = "ndarray")]
 mod ndarray;
 
@@ -13,7 +14,7 @@ use std::sync::{Arc, Mutex};
 
 use burn::module::{Initializer, Module, ModuleVisitor, Param};
 use burn::nn::{LayerNorm, LayerNormConfig, Linear, LinearConfig};
-use burn::tensor::{Device, IndexingUpdateOp, Int, Tensor, TensorData, activation};
+use burn::tensor::{Device, Tensor, TensorData, activation};
 use orbflow_network::features::N_FEATURES;
 use orbflow_network::neighbours::Neighbours;
 use orbflow_network::net::Sizes;
@@ -21,6 +22,7 @@ use orbflow_network::pyramid::{Level, Pyramid};
 use orbflow_network::relaxation::{BIAS, LEAST_SQUARE};
 
 use gated::gated_sum;
+use gather::{Gather, gathered};
 
 /// `x + out(relu(gated sum(norm(x))))`.
 #[derive(Module, Debug)]
@@ -145,7 +147,7 @@ impl BurnNetwork {
         }
         for (i, (storey, level)) in self.storeys.iter().zip(&pyramid.levels).enumerate().rev() {
             if let Some(coarser) = pyramid.levels.get(i + 1) {
-                x = x.select(0, ids(&coarser.parents, device));
+                x = gathered(x, &children(coarser).reversed());
             }
             x = storey
                 .join
@@ -195,22 +197,15 @@ fn features_of(level: &Level, device: &Device) -> Tensor<2> {
     Tensor::from_data(TensorData::new(level.features.clone(), shape), device)
 }
 
-fn ids(numbers: &[u32], device: &Device) -> Tensor<1, Int> {
-    let numbers: Vec<i64> = numbers.iter().map(|&n| i64::from(n)).collect();
-    let n = numbers.len();
-    Tensor::from_data(TensorData::new(numbers, [n]), device)
-}
-
 /// The mean over the vertices that collapsed into each vertex of a level, itself among them.
 fn pooled(fine: Tensor<2>, level: &Level, device: &Device) -> Tensor<2> {
-    let [_, width] = fine.dims();
+    let children = children(level);
     let n = level.graph.n_vertices();
-    let mut counts = vec![0.0f32; n];
-    for &parent in &level.parents {
-        counts[parent as usize] += 1.0;
-    }
-    let counts = Tensor::<2>::from_data(TensorData::new(counts, [n, 1]), device);
-    let parents = ids(&level.parents, device);
-    let sums = Tensor::zeros([n, width], device);
-    sums.select_assign(0, parents, fine, IndexingUpdateOp::Add) / counts
+    let counts = TensorData::new(children.counts(), [n, 1]);
+    gathered(fine, &children) / Tensor::from_data(counts, device)
+}
+
+/// For each vertex of a level the vertices of the next finer one that collapsed into it.
+fn children(level: &Level) -> Gather {
+    Gather::of_rows(level.parents.clone(), level.graph.n_vertices()).reversed()
 }
