@@ -16,6 +16,9 @@ const N_SWEEPS: usize = 6;
 const N_SPRING_SWEEPS: usize = 20;
 /// How many samples a triangle has.
 pub(super) const N_SAMPLES: usize = 6;
+/// How much a vertex that is too far off the surface is called back, for each of its triangles, where
+/// a sample weighs 1: at 1 quads of thin fingers get worse, at 0.5 spikes are left in creases.
+const CALLED_BACK: f64 = 0.75;
 /// Where: near the corners and in the middle of the sides.
 pub(super) const SAMPLES: [[f64; 3]; N_SAMPLES] = [
     [2.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0],
@@ -45,11 +48,14 @@ pub(super) struct Call {
     pub gap: f64,
 }
 
-/// Where a vertex wants to go along the surface, and how much.
+/// What a vertex wishes.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Wish {
+    /// Where it wants to go along the surface, and how much.
     pub step: DVec3,
     pub weight: f64,
+    /// The way back towards the surface, where it is too far off.
+    pub back: DVec3,
 }
 
 /// All that pulls and holds.
@@ -105,15 +111,17 @@ impl Problem<'_> {
         Ok(steps)
     }
 
-    /// The anchor and the wish of a vertex of so many triangles.
+    /// The anchor and the wishes of a vertex of so many triangles.
     fn held(&self, v: VertexId, normal: DVec3, n_triangles: usize) -> Fit {
         let n = n_triangles.max(1) as f64;
         let Anchor { across, along } = self.anchor;
         let wish = self.wishes[v];
+        let matrix = DMat3::from_diagonal(DVec3::splat(along * n + wish.weight));
         Fit {
-            matrix: DMat3::from_diagonal(DVec3::splat(along * n + wish.weight))
-                + outer(normal, (across - along) * n - wish.weight),
-            pull: wish.step * wish.weight,
+            matrix: matrix
+                + outer(normal, (across - along) * n - wish.weight)
+                + outer(wish.back.normalize_or_zero(), CALLED_BACK * n),
+            pull: wish.step * wish.weight + wish.back * (CALLED_BACK * n),
         }
     }
 }

@@ -8,7 +8,9 @@
 //!
 //! Asked that way alone, faces know nothing of what they miss. Sites of the surface then call upon
 //! their closest faces by the same equation, x the closest point, c the site and m the way between
-//! (Hoppe et al. 1993), and quads wish to be squares meanwhile.
+//! (Hoppe et al. 1993), and quads wish to be squares meanwhile. Faces that meet in a fold of the
+//! surface, below a brow, cross far inside it: their vertex is called back, for the samples beside
+//! it no longer know the way once the faces stand across the surface.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -29,6 +31,9 @@ use crate::progress::{Cancelled, Progress};
 const GUARDED_QUALITY: f64 = 0.35;
 /// How many edges away a face is that a site calls upon, at most.
 const FARTHEST_CALL: f64 = 2.0;
+/// How far off the surface a vertex may go, in edges, before it is called back: at 0.25 it holds
+/// what straddles a thin blade.
+const FARTHEST_OFF: f64 = 0.35;
 
 /// How strongly vertices are held while faces are fitted, relative to the samples' pull.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
@@ -105,7 +110,7 @@ impl Fit<'_> {
         let problem = Problem {
             samples: &samples,
             calls: &self.calls(sheet, progress)?,
-            wishes: &self.wishes(sheet),
+            wishes: &self.wishes(sheet, progress)?,
             anchor: self.anchor,
             even: even.as_ref(),
         };
@@ -172,9 +177,12 @@ impl Fit<'_> {
         Ok(calls)
     }
 
-    /// The way of every vertex, along the surface, to the mean of where its quads were squares.
-    fn wishes(&self, sheet: &Sheet) -> VertexMap<Wish> {
-        let wish = |v: VertexId| {
+    /// The way of every vertex, along the surface, to the mean of where its quads were squares, and
+    /// the way back to the surface.
+    fn wishes(&self, sheet: &Sheet, progress: &Progress) -> Result<VertexMap<Wish>, Cancelled> {
+        let wish = |v: usize| {
+            progress.check()?;
+            let v = VertexId::from_index(v);
             let steps = sheet.ring(v).iter().map(|&face| {
                 let face = &sheet.faces()[face];
                 square_corner(sheet, face, v) - sheet.position(v)
@@ -182,16 +190,27 @@ impl Fit<'_> {
             let (sum, n) = steps.fold((DVec3::ZERO, 0.0), |(sum, n), step| (sum + step, n + 1.0));
             let step = sum / n;
             let normal = sheet.point(v).normal;
-            Wish {
+            Ok(Wish {
                 step: step - normal * normal.dot(step),
                 weight: self.squareness * n,
-            }
+                back: self.way_back(sheet.position(v), normal),
+            })
         };
         if self.squareness > 0.0 {
-            sheet.vertex_ids().map(wish).collect()
+            let wishes = (0..sheet.n_vertices()).into_par_iter().map(wish);
+            let wishes = wishes.collect::<Result<Vec<_>, Cancelled>>()?;
+            Ok(VertexMap::from_vec(wishes))
         } else {
-            VertexMap::filled(sheet.n_vertices(), Wish::default())
+            Ok(VertexMap::filled(sheet.n_vertices(), Wish::default()))
         }
+    }
+
+    /// The way back from a point that is too far off the surface to where it no longer is.
+    fn way_back(&self, x: DVec3, normal: DVec3) -> DVec3 {
+        let foot = self.target.closest_agreeing(x, normal, self.reach);
+        let way = foot.map_or(DVec3::ZERO, |foot| foot.position - x);
+        let beyond = way.length() - FARTHEST_OFF * self.reach;
+        way.normalize_or_zero() * beyond.max(0.0)
     }
 }
 
@@ -251,6 +270,47 @@ mod tests {
     fn what_the_faces_miss_calls_upon_them() {
         let [[without, _], [with, _]] = [0, 2_000].map(|n| fitted(n, 0.25));
         assert!(with > without + 0.03, "{with} {without}");
+    }
+
+    #[test]
+    fn vertices_far_off_the_surface_are_called_back() {
+        let ball = shapes::sphere(24);
+        let sphere = ball.positions().iter().copied().collect();
+        let target = Target::new(ball.clone(), &Progress::none()).unwrap();
+        let map = SphereMap::prove(ball, sphere).unwrap();
+        let sheet = Sheet::new(&map, vertex_normals(map.mesh()), &quad_sphere([5, 5, 5]));
+        let fit = Fit {
+            target: &target,
+            reach: sheet.mean_edge(),
+            anchor: Anchor::default(),
+            sites: &[],
+            squareness: 0.25,
+            even: None,
+        };
+        // Where faces stand across the surface nothing else pulls.
+        let stepped = |v: VertexId, off: f64| {
+            let normal = sheet.point(v).normal;
+            let x = sheet.position(v) + normal * (off * fit.reach);
+            let mut wishes = VertexMap::filled(sheet.n_vertices(), Wish::default());
+            wishes[v].back = fit.way_back(x, normal);
+            let problem = Problem {
+                samples: &[],
+                calls: &[],
+                wishes: &wishes,
+                anchor: fit.anchor,
+                even: None,
+            };
+            let steps = problem.solve(&sheet, &Progress::none()).unwrap();
+            steps[v].dot(normal) / fit.reach
+        };
+        for v in [VertexId(0), VertexId(31), VertexId(100)] {
+            let steps = [-0.9, -0.6, -0.3, 0.3, 0.6, 1.1].map(|off| stepped(v, off));
+            assert!(steps[0] > 0.4 && steps[0] < 0.56, "{steps:?}");
+            assert!(steps[1] > 0.15 && steps[1] < 0.26, "{steps:?}");
+            assert!(steps[4] < -0.15 && steps[4] > -0.26, "{steps:?}");
+            let mut near_or_lost = [2, 3, 5].map(|i| steps[i]).into_iter();
+            assert!(near_or_lost.all(|step| step == 0.0), "{steps:?}");
+        }
     }
 
     #[test]
