@@ -24,10 +24,10 @@ impl GraphOps for Cube {
         let width = rows.meta.shape()[1] / 4;
         let sum = Self::float_empty([n, width].into(), &rows.device, FloatDType::F32);
         let [starts, others] = lists(graph.table(), &rows).map(CubeTensor::into_buffer_arg);
-        let threads = CubeDim::new(&rows.client, n * width);
+        let (count, threads) = grid(&rows, n * width);
         sum_kernel::launch(
             &sum.client,
-            calculate_cube_count_elemwise(&rows.client, n * width, threads),
+            count,
             threads,
             rows.into_tensor_arg(),
             starts,
@@ -46,10 +46,10 @@ impl GraphOps for Cube {
         let width = rows.meta.shape()[1] / 4;
         let by_rows = Self::float_empty([n, 4 * width].into(), &rows.device, FloatDType::F32);
         let [starts, others] = lists(graph.table(), &rows).map(CubeTensor::into_buffer_arg);
-        let threads = CubeDim::new(&rows.client, n * width);
+        let (count, threads) = grid(&rows, n * width);
         backward_kernel::launch(
             &by_rows.client,
-            calculate_cube_count_elemwise(&rows.client, n * width, threads),
+            count,
             threads,
             rows.into_tensor_arg(),
             by_sum.into_tensor_arg(),
@@ -66,10 +66,10 @@ impl GraphOps for Cube {
         let sums = Self::float_empty([n, width].into(), &rows.device, FloatDType::F32);
         let lists = lists([&table.starts, &table.rows], &rows);
         let [starts, others] = lists.map(CubeTensor::into_buffer_arg);
-        let threads = CubeDim::new(&rows.client, n * width);
+        let (count, threads) = grid(&rows, n * width);
         gather_kernel::launch(
             &sums.client,
-            calculate_cube_count_elemwise(&rows.client, n * width, threads),
+            count,
             threads,
             rows.into_tensor_arg(),
             starts,
@@ -78,6 +78,13 @@ impl GraphOps for Cube {
         );
         sums
     }
+}
+
+/// As many threads as there are elements, on the device of some rows.
+fn grid(rows: &CubeTensor, n_elements: usize) -> (CubeCount, CubeDim) {
+    let threads = CubeDim::new(&rows.client, n_elements);
+    let count = calculate_cube_count_elemwise(&rows.client, n_elements, threads);
+    (count, threads)
 }
 
 /// Where each list starts, and all lists, beside some rows.
