@@ -83,7 +83,8 @@ def beside_peers(bench: Bench, primitive: str, n_quads: int) -> list[Row]:
                 figures = bench.figures(mesh.path, found["output"], n_quads)
                 row |= {f"{peer}_{name}": figures[name] for name in PEER_FIGURES}
         for _ in range(N_REPEATS if row["ok"] and in_peer_range([row]) else 0):
-            again = {"run_s": remeshed(bench, mesh.path, (primitive, n_quads))["run_s"]}
+            *_, done, report = _ran(bench, mesh.path, (primitive, n_quads))
+            again = {"run_s": _cost(done, report)["run_s"]}
             again |= {
                 f"{peer}_s": bench.peer(mesh.path, peer, n_quads).get("cpu_s") for peer in peers
             }
@@ -106,14 +107,10 @@ def remeshed(
 
     With poses, other positions of the input's vertices, also those of the result bent like it.
     """
-    primitive, n_faces, *others = asked
+    primitive, n_faces, *_ = asked
     assert isinstance(n_faces, int)
     name = path.stem
-    output = bench.out / "_".join(str(each).strip("-") for each in asked) / f"{name}.obj"
-    output.parent.mkdir(parents=True, exist_ok=True)
-    arguments = ("--faces", n_faces, "--primitive", primitive, "--threads", 1, *others)
-    done, report = bench.program("remesh", path, output, *arguments)
-    command = f"orbflow remesh {path} out.obj {' '.join(map(str, arguments))}"
+    output, command, done, report = _ran(bench, path, asked)
     if not done.ok:
         return failure(name, done, command)
     n_quads = n_faces // 2 if primitive == "adaptive" else n_faces
@@ -129,6 +126,16 @@ def remeshed(
         "n_folds": report["embedding"]["n_folds"],
         "is_used": flows(report),
     }
+
+
+def _ran(bench: Bench, path: Path, asked: tuple[str | int, ...]) -> tuple[Path, str, Run, Row]:
+    """One run: what it wrote, its command, its cost and its report."""
+    primitive, n_faces, *others = asked
+    output = bench.out / "_".join(str(each).strip("-") for each in asked) / f"{path.stem}.obj"
+    output.parent.mkdir(parents=True, exist_ok=True)
+    arguments = ("--faces", n_faces, "--primitive", primitive, "--threads", 1, *others)
+    done, report = bench.program("remesh", path, output, *arguments)
+    return output, f"orbflow remesh {path} out.obj {' '.join(map(str, arguments))}", done, report
 
 
 def flows(report: Row) -> bool:
