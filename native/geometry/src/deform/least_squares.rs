@@ -14,11 +14,11 @@ use crate::progress::{Cancelled, Progress};
 const N_SWEEPS: usize = 6;
 /// With springs, which couple neighbours strongly: fewer leave lengths uneven over long ways.
 const N_SPRING_SWEEPS: usize = 20;
-/// How many samples a triangle has.
-pub(super) const N_SAMPLES: usize = 6;
 /// How much a vertex that is too far off the surface is called back, for each of its triangles, where
 /// a sample weighs 1: at 1 quads of thin fingers get worse, at 0.5 spikes are left in creases.
 const CALLED_BACK: f64 = 0.75;
+/// How many samples a triangle has.
+pub(super) const N_SAMPLES: usize = 6;
 /// Where: near the corners and in the middle of the sides.
 pub(super) const SAMPLES: [[f64; 3]; N_SAMPLES] = [
     [2.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0],
