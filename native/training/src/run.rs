@@ -177,12 +177,12 @@ impl Training {
                 GradientsParams::from_grads(loss.backward(), &network),
             )
         });
-        let mut sum = (0.0, GradientsAccumulator::new());
+        let (mut mean, mut sum) = (0.0, GradientsAccumulator::new());
         for (loss, gradients) in parts.collect::<Vec<_>>() {
-            sum.0 += loss;
-            sum.1.accumulate(&self.network, gradients);
+            mean += loss;
+            sum.accumulate(&self.network, gradients);
         }
-        (sum.0, sum.1.grads())
+        (mean, sum.grads())
     }
 
     /// Runs to the end, logging and keeping a checkpoint every interval.

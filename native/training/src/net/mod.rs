@@ -133,11 +133,17 @@ impl BurnNetwork {
             .iter()
             .map(|level| features_of(level, device))
             .collect();
+        // For the vertices of the next finer level, the rows of those that they collapsed into.
+        let parents: Vec<Gather> = pyramid
+            .levels
+            .iter()
+            .map(|level| Gather::of_rows(level.parents.clone(), level.graph.n_vertices()))
+            .collect();
         let mut kept = Vec::with_capacity(n_levels);
         let mut x = self.storeys[0].enter.forward(inputs[0].clone());
         for (i, (storey, level)) in self.storeys.iter().zip(&pyramid.levels).enumerate() {
             if i > 0 {
-                x = pooled(x, level, device) + storey.enter.forward(inputs[i].clone());
+                x = pooled(x, &parents[i], device) + storey.enter.forward(inputs[i].clone());
             }
             x = storey
                 .down
@@ -146,8 +152,8 @@ impl BurnNetwork {
             kept.push(x.clone());
         }
         for (i, (storey, level)) in self.storeys.iter().zip(&pyramid.levels).enumerate().rev() {
-            if let Some(coarser) = pyramid.levels.get(i + 1) {
-                x = gathered(x, &children(coarser).reversed());
+            if let Some(parents) = parents.get(i + 1) {
+                x = gathered(x, parents);
             }
             x = storey
                 .join
@@ -198,14 +204,10 @@ fn features_of(level: &Level, device: &Device) -> Tensor<2> {
 }
 
 /// The mean over the vertices that collapsed into each vertex of a level, itself among them.
-fn pooled(fine: Tensor<2>, level: &Level, device: &Device) -> Tensor<2> {
-    let children = children(level);
-    let n = level.graph.n_vertices();
-    let counts = TensorData::new(children.counts(), [n, 1]);
-    gathered(fine, &children) / Tensor::from_data(counts, device)
-}
-
-/// For each vertex of a level the vertices of the next finer one that collapsed into it.
-fn children(level: &Level) -> Gather {
-    Gather::of_rows(level.parents.clone(), level.graph.n_vertices()).reversed()
+fn pooled(fine: Tensor<2>, parents: &Gather, device: &Device) -> Tensor<2> {
+    let children = parents.reversed();
+    let counts = children.counts();
+    let n = counts.len();
+    let counts = Tensor::from_data(TensorData::new(counts, [n, 1]), device);
+    gathered(fine, &children) / counts
 }
