@@ -21,7 +21,7 @@ const MERGE_RADIUS_NEGATIVE: f64 = 0.5;
 
 /// How far apart the units of a split singularity are put.
 const SPLIT_DISTANCE: f64 = 1.1;
-/// How far around places are sought for them.
+/// How far around places are sought for them, or as many times as far as there are enough.
 const SPLIT_REACH: f64 = 2.4;
 
 /// Merges and splits singularities for quads with edges as long as `sizes` says for each face.
@@ -105,8 +105,22 @@ fn split(mesh: &TriangleMesh, field: &mut OrientationField, sizes: &FaceMap<f64>
         if (-2..=1).contains(&index) {
             continue;
         }
-        reach.spread(v, SPLIT_REACH);
-        for place in places(&reach, field, (v, index.unsigned_abs() as usize)) {
+        let n = index.unsigned_abs() as usize;
+        let n_free = |reach: &Reach| {
+            reach
+                .seen
+                .iter()
+                .filter(|&&u| field.indices[u] == 0)
+                .count()
+        };
+        let mut radius = SPLIT_REACH;
+        reach.spread(v, radius);
+        // Around a spike edges may be longer than that, and one vertex would keep all units.
+        while n_free(&reach) < n && reach.seen.len() < mesh.n_vertices() {
+            radius *= 2.0;
+            reach.spread(v, radius);
+        }
+        for place in places(&reach, field, (v, n)) {
             shift(field, mesh, &reach.path(place), index.signum());
         }
     }
@@ -293,8 +307,8 @@ mod tests {
         assert_eq!(singular, [1; 8]);
     }
 
-    #[test]
-    fn four_units_at_one_vertex_become_the_corners_of_a_quad() {
+    /// A field on a sphere with some of its units at one vertex, which is returned.
+    fn gathered(n: usize) -> (TriangleMesh, OrientationField, VertexId) {
         let mesh = shapes::sphere(20);
         let mut field = orient(&mesh, &Settings::default(), &Progress::none()).unwrap();
         let sizes = FaceMap::filled(mesh.n_faces(), 0.3);
@@ -303,12 +317,28 @@ mod tests {
         let tip = mesh.vertex_ids().find(regular).unwrap();
         reach.spread(tip, f64::INFINITY);
         let singular: Vec<VertexId> = reach.seen.iter().copied().filter(|v| !regular(v)).collect();
-        for v in &singular[..4] {
+        for v in &singular[..n] {
             let back = reach.path(*v);
             shift(&mut field, &mesh, &back, -1);
         }
-        assert_eq!(field.indices[tip], 4);
-        split(&mesh, &mut field, &sizes);
+        assert_eq!(field.indices[tip], n as i32);
+        (mesh, field, tip)
+    }
+
+    #[test]
+    fn units_are_split_over_edges_longer_than_those_of_the_quads() {
+        for size in [0.03, 0.001] {
+            let (mesh, mut field, _) = gathered(3);
+            split(&mesh, &mut field, &FaceMap::filled(mesh.n_faces(), size));
+            assert_eq!(field.check(&mesh), Ok(()));
+            assert!(field.indices.iter().all(|k| (0..=1).contains(k)), "{size}");
+        }
+    }
+
+    #[test]
+    fn four_units_at_one_vertex_become_the_corners_of_a_quad() {
+        let (mesh, mut field, tip) = gathered(4);
+        split(&mesh, &mut field, &FaceMap::filled(mesh.n_faces(), 0.3));
         assert_eq!(field.check(&mesh), Ok(()));
         let at = mesh.position(tip);
         let near = |v: &VertexId| field.indices[*v] == 1 && mesh.position(*v).distance(at) < 0.4;

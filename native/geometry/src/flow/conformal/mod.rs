@@ -5,21 +5,25 @@
 //! ```
 //!
 //! Newton's method on the convex energy of Springborn, Schröder & Pinkall 2008, with intrinsic
-//! Delaunay flips before each step (Gillespie, Springborn & Crane 2021), so that no triangle
-//! degenerates on the way. On a closed surface of genus 0 a metric with these cone angles turns
-//! every vector as the orientation field does: its triangles can be laid into the field's frames.
+//! Delaunay flips before each step; one that would break a triangle flips edges on its way, by
+//! Ptolemy's theorem (Gillespie, Springborn & Crane 2021). On a closed surface of genus 0 a metric
+//! with these cone angles turns every vector as the orientation field does: its triangles can be
+//! laid into the field's frames.
+
+mod layout;
+mod metric;
 
 use std::f64::consts::FRAC_PI_2;
 
 use glam::DVec2;
 use thiserror::Error;
 
-use super::complex::{Complex, Dressing, Turn, flip_moves, move_values};
-use super::field::{Charts, OrientationField};
-use crate::elementary::{atan2, direction, exp, sin};
-use crate::mesh::{FaceId, HalfedgeId, HalfedgeMap, TriangleMesh, VertexMap};
+use super::complex::{Complex, Dressing};
+use super::field::OrientationField;
+use crate::mesh::{HalfedgeId, HalfedgeMap, TriangleMesh, VertexMap};
 use crate::progress::{Cancelled, Progress};
 use crate::sparse::{Cholesky, NotPositiveDefinite, SymmetricMatrix};
+use metric::Metric;
 
 /// How far an angle sum may miss its goal, in radians: near the rounding of a sum of some arcs.
 const EXACT: f64 = 1e-11;
@@ -29,16 +33,14 @@ const CLOSE: f64 = 1e-8;
 const MOST_STEPS: usize = 80;
 /// The largest change of a log scale in one step: e³ᐟ² in length. Larger ones overshoot.
 const LARGEST_STEP: f64 = 3.0;
+/// How often a step is halved before edges are flipped on its way, and again before it is given up.
+const MOST_HALVINGS: usize = 8;
 /// Makes the Laplacian definite; a smaller shift is lost in its rounding.
 const SHIFT: f64 = 1e-8;
 /// Below this miss, in radians, Newton's steps may share a factor.
 const NEAR: f64 = 0.05;
 /// As long as each leaves no more than this share of the miss.
 const GAIN: f64 = 0.1;
-/// The part of its longest side by which a triangle must clear the triangle inequality.
-const LEAST_EXCESS: f64 = 1e-7;
-/// How far below 0 a sum of cotangents must lie to be worth a flip.
-const SLACK: f64 = 1e-10;
 
 /// Why there is no flat metric.
 #[derive(Clone, Copy, PartialEq, Debug, Error)]
@@ -77,30 +79,15 @@ pub fn flatten(
     lines: &[Vec<HalfedgeId>],
     progress: &Progress,
 ) -> Result<Complex, FlattenError> {
-    let charts = Charts::new(mesh);
     let dressing = Dressing {
         turns: field.turns.clone(),
         indices: field.indices.clone(),
         wish,
     };
-    let nowhere = HalfedgeMap::filled(3 * mesh.n_faces(), DVec2::ZERO);
-    let mut complex = Complex::over(mesh, nowhere, dressing);
-    complex.follow_lines(lines);
-    let mut metric = Metric {
-        complex,
-        lengths: mesh
-            .halfedge_ids()
-            .map(|h| charts.edge(h).length())
-            .collect(),
-    };
+    let mut metric = Metric::of(mesh, dressing);
+    metric.complex.follow_lines(lines);
     metric.level(progress)?;
     Ok(metric.into_layout())
-}
-
-/// A complex whose metric is in lengths: its start vectors say nothing yet.
-struct Metric {
-    complex: Complex,
-    lengths: HalfedgeMap<f64>,
 }
 
 impl Metric {
@@ -164,138 +151,34 @@ impl Metric {
     /// Goes as far along a step as lowers the misses; false where nothing does.
     fn go(&mut self, step: &VertexMap<f64>, misses: &VertexMap<f64>) -> bool {
         let squares = |of: &VertexMap<f64>| of.iter().map(|miss| miss * miss).sum::<f64>();
-        let (now, before) = (squares(misses), self.lengths.clone());
+        let now = squares(misses);
         let largest = step.iter().fold(0.0, |most: f64, u| u.abs().max(most));
         // So near to the end rounding may hide the gain of a last step.
         let is_last = misses.iter().all(|miss| miss.abs() < 100.0 * EXACT);
         let allowed = if is_last { 4.0 * now } else { now };
-        let mut share = (LARGEST_STEP / largest).min(1.0);
-        for _ in 0..30 {
-            for h in self.complex.halfedge_ids() {
-                let ends = [self.complex.origins[h], self.complex.target(h)];
-                // From the smaller end, so that twins agree to the last bit.
-                let [a, b] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-                self.lengths[h] = before[h] * exp(0.5 * share * (step[a] + step[b]));
-            }
-            if self.is_metric() && squares(&self.misses()) < allowed {
+        let is_lower = |metric: &Self| metric.is_metric() && squares(&metric.misses()) < allowed;
+        let shares = || {
+            let first = (LARGEST_STEP / largest).min(1.0);
+            std::iter::successors(Some(first), |share| Some(0.5 * share)).take(MOST_HALVINGS)
+        };
+        let before = self.lengths.clone();
+        for share in shares() {
+            self.scale(step, share, &before);
+            if is_lower(self) {
                 return true;
             }
-            share *= 0.5;
+        }
+        for share in shares() {
+            let mut flipped = self.clone();
+            flipped.scale(step, share, &before);
+            flipped.repair();
+            if is_lower(&flipped) {
+                *self = flipped;
+                return true;
+            }
         }
         self.lengths = before;
         false
-    }
-
-    /// Whether every triangle inequality holds with room to spare.
-    fn is_metric(&self) -> bool {
-        self.lengths.as_slice().chunks_exact(3).all(|sides| {
-            let longest = sides[0].max(sides[1]).max(sides[2]);
-            let excess = sides.iter().sum::<f64>() - 2.0 * longest;
-            longest.is_normal() && excess > LEAST_EXCESS * longest
-        })
-    }
-
-    /// The angle of the corner that a halfedge leaves.
-    fn angle(&self, h: HalfedgeId) -> f64 {
-        let [a, b, opposite] = [h, h.prev(), h.next()].map(|e| self.lengths[e]);
-        // Half-angle form: exact for slivers too, where the cosine is not.
-        let half = [
-            (opposite + (a - b)) * (opposite - (a - b)),
-            (a + b + opposite) * (a + b - opposite),
-        ];
-        2.0 * atan2(half[0].max(0.0).sqrt(), half[1].max(0.0).sqrt())
-    }
-
-    /// The cotangent of the angle opposite to a halfedge.
-    fn cotangent(&self, h: HalfedgeId) -> f64 {
-        let [side, a, b] = [h, h.next(), h.prev()].map(|e| self.lengths[e]);
-        let squared = (side + a + b) * (a + b - side) * (side + (a - b)) * (side - (a - b));
-        (a * a + b * b - side * side) / squared.max(f64::MIN_POSITIVE).sqrt()
-    }
-
-    /// Flips edges until the triangulation is Delaunay in the lengths.
-    fn delaunay(&mut self) {
-        let edges = self.complex.halfedge_ids();
-        let mut waiting: Vec<HalfedgeId> = edges.filter(|&h| h < self.complex.twins[h]).collect();
-        // Flips lower an energy, so they end; the cap guards against rounding.
-        let mut n_left = 50 * waiting.len();
-        while let Some(h) = waiting.pop() {
-            let t = self.complex.twins[h];
-            if h.face() == t.face() || self.cotangent(h) + self.cotangent(t) >= -SLACK {
-                continue;
-            }
-            let at_origin = self.angle(h) + self.angle(t.next());
-            let at_target = self.angle(h.next()) + self.angle(t);
-            if at_origin.max(at_target) >= std::f64::consts::PI - 1e-9 || n_left == 0 {
-                continue;
-            }
-            n_left -= 1;
-            self.flip(h, at_origin);
-            let t = self.complex.twins[h];
-            waiting.extend([h.next(), h.prev(), t.next(), t.prev()]);
-        }
-    }
-
-    fn flip(&mut self, h: HalfedgeId, at_origin: f64) {
-        let t = self.complex.twins[h];
-        let [a, b] = [self.lengths[h.prev()], self.lengths[t.next()]];
-        // |a − b|² + 4ab sin²: the law of cosines without its cancellation.
-        let half = sin(0.5 * at_origin);
-        let diagonal = ((a - b) * (a - b) + 4.0 * a * b * half * half).sqrt();
-        self.complex.flip_edge(h);
-        move_values(&mut self.lengths, &flip_moves(h, t));
-        self.lengths[h] = diagonal;
-        self.lengths[t] = diagonal;
-    }
-
-    /// Lays face after face into the frames, then turns and scales the whole to fit the wish.
-    fn into_layout(mut self) -> Complex {
-        let mut is_laid = vec![false; self.complex.n_faces()];
-        let mut queue = std::collections::VecDeque::new();
-        self.lay(HalfedgeId(0), DVec2::new(self.lengths[HalfedgeId(0)], 0.0));
-        is_laid[0] = true;
-        queue.push_back(FaceId(0));
-        while let Some(face) = queue.pop_front() {
-            let first = self.complex.halfedge(face);
-            for h in [first, first.next(), first.prev()] {
-                let t = self.complex.twins[h];
-                let seen = &mut is_laid[t.face().0 as usize];
-                if !std::mem::replace(seen, true) {
-                    let vector = -self.complex.start[h].turned(self.complex.turns[h]);
-                    self.lay(t, vector);
-                    queue.push_back(t.face());
-                }
-            }
-        }
-        self.fit_to_wish();
-        self.complex
-    }
-
-    fn lay(&mut self, h: HalfedgeId, vector: DVec2) {
-        let [angle, side] = [self.angle(h), self.lengths[h.prev()]];
-        let along = vector / self.lengths[h];
-        let apex = along.rotate(direction(angle)) * side;
-        let start = &mut self.complex.start;
-        start[h] = vector;
-        start[h.next()] = apex - vector;
-        start[h.prev()] = -apex;
-    }
-
-    /// Multiplies the metric by the complex number that brings it nearest to the wish, with long
-    /// and short edges counting alike.
-    fn fit_to_wish(&mut self) {
-        let (mut fit, mut size) = (DVec2::ZERO, 0.0);
-        for h in self.complex.halfedge_ids() {
-            let [start, wish] = [self.complex.start[h], self.complex.wish[h]];
-            fit += DVec2::new(start.x, -start.y).rotate(wish) / self.lengths[h];
-            size += start.length_squared() / self.lengths[h];
-        }
-        if fit.length_squared() > 0.0 {
-            let factor = fit / size;
-            for vector in self.complex.start.as_mut_slice() {
-                *vector = vector.rotate(factor);
-            }
-        }
     }
 }
 
