@@ -137,9 +137,14 @@ impl Fit<'_> {
             normals: [[0.0; 3]; N_SAMPLES],
             gaps: [0.0; N_SAMPLES],
         };
+        let mut hint = None;
         for (k, [u, v, w]) in SAMPLES.into_iter().enumerate() {
             let x = a * u + b * v + c * w;
-            if let Some(foot) = self.target.closest_agreeing(x, normal, self.reach) {
+            let foot = self
+                .target
+                .closest_agreeing_near(x, normal, self.reach, hint);
+            if let Some(foot) = foot {
+                hint = Some(foot.face);
                 let plane = self.target.normal(foot.face);
                 // Where the face does not follow the surface, as over a tip, the plane says little.
                 let plane_weight = normal.dot(plane);

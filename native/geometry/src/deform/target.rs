@@ -84,8 +84,19 @@ impl Target {
     /// Faces that look another way belong to another sheet of the surface: the far side of a thin
     /// plate, the next finger.
     pub fn closest_agreeing(&self, p: DVec3, normal: DVec3, reach: f64) -> Option<Closest> {
+        self.closest_agreeing_near(p, normal, reach, None)
+    }
+
+    /// The same, faster where `hint` is a face not far from it.
+    pub fn closest_agreeing_near(
+        &self,
+        p: DVec3,
+        normal: DVec3,
+        reach: f64,
+        hint: Option<FaceId>,
+    ) -> Option<Closest> {
         // 75°: beyond, the walls of a sharp edge's other side would count as agreeing.
         let agrees = |face| self.normals[face].dot(normal) > 0.25;
-        self.bvh.closest_where(p, reach * reach, agrees)
+        self.bvh.closest_where_near(p, reach * reach, hint, agrees)
     }
 }

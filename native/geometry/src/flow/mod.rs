@@ -7,7 +7,8 @@
 //!
 //! That metric is decided by free Gaussian integers, its [`periods`]. [`drag`] moves it through
 //! valid metrics only, [`rounding`] to whole periods, with rings round the limbs imposed
-//! first; a [`search`] of counted trials picks and improves. Its unit [`grid`] is the quads.
+//! first; a [`search`] of counted trials picks and improves. Its unit [`grid`] is the quads; where no
+//! grid of the count is valid, strips are taken out of a finer one.
 
 pub mod complex;
 pub mod cones;
@@ -18,6 +19,7 @@ pub mod drag;
 mod dress;
 pub mod field;
 pub mod grid;
+mod laid;
 mod lines;
 mod mirror;
 pub mod periods;
@@ -30,6 +32,7 @@ pub mod singularities;
 pub mod sizes;
 mod stars;
 pub mod strips;
+mod thin;
 pub mod wish;
 
 pub use quads::{Error, Flow, Guides, Report, Settings, flow};

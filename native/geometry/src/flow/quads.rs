@@ -1,21 +1,19 @@
 //! The passes in order: a surface in, quads out.
 
-use std::collections::BTreeMap;
-
 use glam::{DVec2, DVec3};
 use serde::Serialize;
 use thiserror::Error;
 
 use super::cones::keep_cones;
 use super::conformal::{FlattenError, flatten};
-use super::creases::{self, Line};
 use super::dress::{Dressed, dress};
 use super::field::{self, FieldError, OrientationField};
-use super::grid::Grid;
-use super::mirror::{Plan, images};
-use super::place::{PlaceError, Placed, place};
+use super::laid::{Laid, lay};
+use super::mirror::Plan;
+use super::place::PlaceError;
 use super::search::{self, QuantiseError, Quantised, Score, quantise};
 use super::sizes::{self, SizesError};
+use super::thin::n_irregular;
 use super::wish::WishError;
 use crate::measure::Seam;
 use crate::mesh::{
@@ -38,6 +36,8 @@ pub struct Settings {
     pub sharp_angle: Option<f64>,
     /// How long whole periods are searched, and what makes them good.
     pub search: search::Settings,
+    /// Whether more quads will do, because strips of them are to be taken out: see [`Flow::thinned`].
+    pub may_exceed: bool,
 }
 
 impl Settings {
@@ -49,6 +49,7 @@ impl Settings {
             sizes: sizes::Settings::default(),
             sharp_angle: Some(40f64.to_radians()),
             search: search::Settings::default(),
+            may_exceed: false,
         }
     }
 }
@@ -90,8 +91,10 @@ pub struct Report {
     pub n_quads: usize,
     /// How many vertices of the quads are irregular.
     pub n_cones: usize,
-    /// How good the grid is.
+    /// How good the grid is, before strips were taken out.
     pub score: Score,
+    /// How many quads were taken out in strips.
+    pub n_thinned: usize,
     /// How many roundings and moves of periods were scored.
     pub n_trials: usize,
     /// How many roundings got stuck.
@@ -170,8 +173,8 @@ lift!(
 );
 
 /// How far the number of quads may be off: 2 %, or 2 quads.
-fn is_near(n_quads: usize, n_wanted: usize) -> bool {
-    n_quads.abs_diff(n_wanted) <= (n_wanted / 50).max(2)
+pub(super) fn tolerance(n_wanted: usize) -> usize {
+    (n_wanted / 50).max(2)
 }
 
 /// Makes a closed mesh of quads whose edges follow the shape of a surface of genus 0.
@@ -201,30 +204,24 @@ pub fn flow(
     let part = progress.part("", 0.05, 0.2);
     let dressed = dress(mesh, (guides, &sizes), settings, &part)?;
     let laid = search(map, guides, (&dressed, settings), progress)?;
-    let Laid {
-        whole: Quantised { grid, report, .. },
-        placed,
-        seams,
-        images,
-        ..
-    } = laid;
-    let field = dressed.field;
     let n_lines = dressed.plans[0].lines().count();
+    let report = Report {
+        n_quads: laid.quads.len(),
+        n_cones: n_irregular(laid.placed.positions.len(), &laid.quads),
+        score: laid.report.score,
+        n_thinned: 0,
+        n_trials: laid.report.n_trials,
+        n_stuck: laid.report.n_stuck,
+        n_creases: [n_lines, laid.seams.len()],
+    };
     Ok(Flow {
-        mesh: PolygonMesh::from_faces(placed.positions, &grid.quads)?,
-        sphere: placed.sphere,
-        crosses: field.directions,
+        mesh: PolygonMesh::from_faces(laid.placed.positions, &laid.quads)?,
+        sphere: laid.placed.sphere,
+        crosses: dressed.field.directions,
         sizes,
-        images,
-        report: Report {
-            n_quads: grid.quads.len(),
-            n_cones: field.indices.iter().filter(|&&k| k != 0).count(),
-            score: report.score,
-            n_trials: report.n_trials,
-            n_stuck: report.n_stuck,
-            n_creases: [n_lines, seams.len()],
-        },
-        seams,
+        images: laid.images,
+        seams: laid.seams,
+        report,
     })
 }
 
@@ -279,60 +276,19 @@ fn whole(
     let complex = keep_cones(complex, &is_wanted, &progress.part("", 0.2, 0.25))?;
     let part = progress.part("", 0.25, 1.0);
     let whole = quantise(complex, settings.n_quads, &settings.search, &part)?;
-    check(&whole.grid, settings.n_quads, whole.report.score.n_doubled)?;
+    check(&whole, settings)?;
     Ok(whole)
 }
 
-/// A grid with first positions, and which of its vertices belong on lines.
-struct Laid {
-    whole: Quantised,
-    placed: Placed,
-    seams: Vec<Seam>,
-    /// Which lines of the plan have a seam.
-    is_met: Vec<bool>,
-    images: Option<Vec<VertexId>>,
-}
-
-fn lay(
-    map: &SphereMap,
-    mirror: Option<&Doubled>,
-    (whole, plan): (Quantised, &Plan),
-    progress: &Progress,
-) -> Result<Laid, Error> {
-    let grid = &whole.grid;
-    let quads = (grid.n_vertices, &grid.quads[..]);
-    let part = progress.part("", 0.0, 0.5);
-    let mut placed = place(map, quads, &grid.cells, &[], &part)?;
-    let laid = (&grid.quads[..], &placed.positions[..]);
-    let lines: Vec<&Line> = plan.lines().collect();
-    let seams = creases::seams(map.mesh(), &lines, &whole.complex, laid);
-    let images = match mirror {
-        Some(_) => Some(images(quads, &seams[..plan.plane.len()]).ok_or(Error::Uneven)?),
-        None => None,
-    };
-    let is_met = seams.iter().map(Option::is_some).collect();
-    let seams: Vec<Seam> = seams.into_iter().flatten().collect();
-    if !seams.is_empty() {
-        let goals: BTreeMap<u32, DVec3> = seams.iter().flat_map(creases::goals).collect();
-        let goals: Vec<_> = goals.into_iter().collect();
-        let part = progress.part("", 0.5, 1.0);
-        placed = place(map, quads, &grid.cells, &goals, &part)?;
-    }
-    Ok(Laid {
-        whole,
-        placed,
-        seams,
-        is_met,
-        images,
-    })
-}
-
-fn check(grid: &Grid, n_wanted: usize, n_doubled: usize) -> Result<(), Error> {
+fn check(whole: &Quantised, settings: &Settings) -> Result<(), Error> {
+    let n_doubled = whole.report.score.n_doubled;
     if n_doubled > 0 {
         return Err(Error::Doubled { n_doubled });
     }
-    let n_quads = grid.quads.len();
-    if !is_near(n_quads, n_wanted) {
+    let [n_quads, n_wanted] = [whole.grid.quads.len(), settings.n_quads];
+    let tolerance = tolerance(n_wanted);
+    let is_too_many = n_quads > n_wanted + tolerance && !settings.may_exceed;
+    if is_too_many || n_quads + tolerance < n_wanted {
         return Err(Error::Count { n_quads, n_wanted });
     }
     Ok(())

@@ -60,13 +60,13 @@ fn end(quads: &[[u32; 4]], h: usize) -> u32 {
 }
 
 /// The halfedges that leave each vertex.
-struct Leaving {
+pub(super) struct Leaving {
     starts: Vec<usize>,
     halfedges: Vec<usize>,
 }
 
 impl Leaving {
-    fn new(quads: &[[u32; 4]], n_vertices: usize) -> Self {
+    pub fn new(quads: &[[u32; 4]], n_vertices: usize) -> Self {
         let mut starts = vec![0; n_vertices + 1];
         for &v in quads.iter().flatten() {
             starts[v as usize + 1] += 1;
@@ -87,7 +87,8 @@ impl Leaving {
         &self.halfedges[self.starts[vertex]..self.starts[vertex + 1]]
     }
 
-    fn twins(&self, quads: &[[u32; 4]]) -> Option<Vec<usize>> {
+    /// The other side of each halfedge; none when edges do not match.
+    pub fn twins(&self, quads: &[[u32; 4]]) -> Option<Vec<usize>> {
         let start = |h: usize| quads[h / 4][h % 4];
         (0..4 * quads.len())
             .map(|h| {
@@ -99,7 +100,7 @@ impl Leaving {
 }
 
 /// The strip that crosses each halfedge, and how many there are.
-fn follow_strips(twins: &[usize]) -> (Vec<usize>, usize) {
+pub(super) fn follow_strips(twins: &[usize]) -> (Vec<usize>, usize) {
     let mut strip_of = vec![usize::MAX; twins.len()];
     let mut n = 0;
     for first in 0..twins.len() {

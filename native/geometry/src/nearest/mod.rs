@@ -179,13 +179,34 @@ impl Bvh {
         max_distance_squared: f64,
         accept: impl Fn(FaceId) -> bool,
     ) -> Option<Closest> {
+        self.closest_where_near(p, max_distance_squared, None, accept)
+    }
+
+    /// The same as [`Bvh::closest_where`], faster where `hint` is a face not far from the closest
+    /// one.
+    ///
+    /// # Panics
+    /// When there is no face `hint`.
+    pub fn closest_where_near(
+        &self,
+        p: DVec3,
+        max_distance_squared: f64,
+        hint: Option<FaceId>,
+        accept: impl Fn(FaceId) -> bool,
+    ) -> Option<Closest> {
         let none = Closest {
             face: FaceId(u32::MAX),
             weights: [0.0; 3],
             position: p,
             distance_squared: max_distance_squared,
         };
-        Some(search::closest(self, p, none, &accept)).filter(|found| found.face != none.face)
+        let hinted = hint.filter(|&face| accept(face)).map(|face| {
+            let found = closest_on_triangle(p, self.triangle(face));
+            found.of(face)
+        });
+        let near = hinted.filter(|found| found.distance_squared <= max_distance_squared);
+        let start = near.unwrap_or(none);
+        Some(search::closest(self, p, start, &accept)).filter(|found| found.face != none.face)
     }
 
     /// Calls `visit` with every face whose bounding box touches the box from `low` to `high`.

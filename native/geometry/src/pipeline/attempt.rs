@@ -20,16 +20,25 @@ pub enum Attempt {
     Closest,
     /// The usual field and one size.
     Even,
+    /// The usual ones and no exact count: strips of the quads are taken out.
+    Thinned,
+    /// The same of twice as many quads.
+    Denser,
+    /// The same of four times as many.
+    Densest,
 }
 
 impl Attempt {
-    pub(super) const ALL: [Self; 6] = [
+    pub(super) const ALL: [Self; 9] = [
         Self::Usual,
         Self::Smoother,
         Self::Closer,
         Self::Evener,
         Self::Closest,
         Self::Even,
+        Self::Thinned,
+        Self::Denser,
+        Self::Densest,
     ];
 
     pub(super) fn settings(self, style: &flow::Settings) -> flow::Settings {
@@ -50,8 +59,21 @@ impl Attempt {
                 settings.sizes.adaptivity = share_of(style, 0.5);
             }
             Self::Even => settings.sizes.adaptivity = 0.0,
+            Self::Thinned | Self::Denser | Self::Densest => {
+                settings.may_exceed = true;
+                settings.n_quads *= match self {
+                    Self::Denser => 2,
+                    Self::Densest => 4,
+                    _ => 1,
+                };
+            }
         }
         settings
+    }
+
+    /// Whether it is for parts that do not flow otherwise: where strips are taken out loops end.
+    pub(super) fn is_last_resort(self) -> bool {
+        matches!(self, Self::Thinned | Self::Denser | Self::Densest)
     }
 
     /// Whether its settings are not those of the usual attempt.

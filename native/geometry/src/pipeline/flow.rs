@@ -1,16 +1,16 @@
 //! Quads that flow: an even surface, its flow, a cover of the sphere, the fit.
 
 use glam::DVec3;
-use serde::Serialize;
 
 use super::Settings;
 use super::attempt::Attempt;
 use super::clock::Clock;
-use super::crosses::{self, Cross};
+use super::crosses;
 use super::even::{For, Marked, even};
+use super::flowed::{Flowed, FlowedPart, better};
 use super::probe::Halves;
 use super::{density, mirror};
-use crate::deform::{self, Deformed, Flowing, Target};
+use crate::deform::{self, Flowing, Target};
 use crate::embed::{self, Covered};
 use crate::mesh::{HalfedgeMap, PolygonMesh, VertexMap};
 use crate::mirror::Doubled;
@@ -26,71 +26,10 @@ const MOST_ASTRAY: f64 = 1.0;
 
 /// Of the marked edges this share may be lost before other settings are tried: short ones are.
 const MOST_LOST: f64 = 0.1;
-/// They are worth their smoother field if they save this share of the marked edges.
-const WORTH: f64 = 0.05;
-
-/// One in so many quads may be inverted before it is opened; of more, shape is lost.
-const QUADS_PER_KNOT: usize = 50;
-/// One pair of triangles in so many quads may cross when they have been moved apart.
-const QUADS_PER_CROSSING: usize = 200;
 
 /// Curvature weighs so much less beside marked edges: irregular vertices leave their lines no way,
 /// at 5/6 a ring on a ball is lost at 2,000 quads, at 1 at 400 and 500 too.
 const BESIDE_MARKS: f64 = 2.0 / 3.0;
-
-/// Whether a part's quads flow.
-#[derive(Clone, PartialEq, Debug, Serialize)]
-#[serde(tag = "status", rename_all = "kebab-case")]
-pub enum Flowed {
-    /// They do.
-    Used {
-        /// With which settings.
-        attempt: Attempt,
-        /// How they were found.
-        flow: flow::Report,
-        /// What had to be repaired to lay them on the sphere.
-        cover: embed::CoverReport,
-    },
-    /// They do not; the quad sphere was used instead.
-    Refused {
-        /// Why not.
-        reason: String,
-    },
-}
-
-/// A part whose quads flow.
-pub struct FlowedPart {
-    pub deformed: Deformed,
-    /// How many quads the part of the surface that they miss would take, and how many are astray.
-    pub n_missed: usize,
-    /// The share of the marked edges that no edge of a quad lies along.
-    pub lost: f64,
-    pub sphere: sphere::Report,
-    pub flowed: Flowed,
-    /// As many crosses of the field as were asked for.
-    pub crosses: Vec<Cross>,
-    /// Whether it is its own image in the plane; an error says why not, none was asked.
-    pub mirrored: Option<Result<(), String>>,
-}
-
-impl FlowedPart {
-    /// How many quads fail the gate.
-    fn n_failed(&self) -> usize {
-        let report = &self.deformed.report;
-        let n_quads = self.deformed.mesh.n_faces();
-        let n_knotted = report.n_knotted.saturating_sub(n_quads / QUADS_PER_KNOT);
-        let n_crossing = report
-            .n_crossing_left
-            .saturating_sub(n_quads / QUADS_PER_CROSSING);
-        report.n_inverted + self.n_missed + n_knotted + n_crossing
-    }
-
-    /// Whether it is to be preferred: fewer quads fail, or as many and more marks are met.
-    fn is_better_than(&self, other: &Self) -> bool {
-        let [own, others] = [self, other].map(FlowedPart::n_failed);
-        own < others || (own == others && self.lost + WORTH < other.lost)
-    }
-}
 
 /// What quads of a part are to be.
 #[derive(Clone, Copy)]
@@ -218,19 +157,6 @@ fn symmetric(
     })
 }
 
-/// The better one, the first of equals; of two reasons the first.
-fn better(
-    best: Result<FlowedPart, String>,
-    next: Result<FlowedPart, String>,
-) -> Result<FlowedPart, String> {
-    match (&best, &next) {
-        (Ok(old), Ok(new)) if !new.is_better_than(old) => best,
-        (Ok(_), Err(_)) => best,
-        (Err(reason), Err(_)) if !reason.is_empty() => best,
-        _ => next,
-    }
-}
-
 impl Ground<'_> {
     /// Takes an even surface that is its own image in place of the usual one, which it returns.
     fn doubled(
@@ -259,8 +185,14 @@ impl Ground<'_> {
         let mut from = 0.0;
         let all = Attempt::ALL.into_iter();
         for attempt in all.filter(|attempt| attempt.is_worth_trying(&self.style)) {
+            // Without strips nothing is its own image.
+            let is_flowing = best.as_ref().is_ok_and(|best| !best.is_last_resort());
+            if attempt.is_last_resort() && (is_flowing || self.doubled.is_some()) {
+                break;
+            }
             let to = from + 0.6 * (1.0 - from);
             let found = self.attempt(attempt, clock, &progress.part("", from, to))?;
+            let found = found.and_then(FlowedPart::not_cut_off);
             from = to;
             best = better(best, found);
             let is_done = |best: &FlowedPart| {
@@ -351,6 +283,10 @@ impl Ground<'_> {
             mirror: self.doubled.as_ref(),
         };
         let found = flow::flow(&self.even, guides, settings, &progress.part("", 0.0, 0.95))?;
+        let found = match settings.may_exceed {
+            true => found.thinned(self.asked.n_quads)?,
+            false => found,
+        };
         let covered = embed::cover(&found.mesh, &found.sphere, &progress.part("", 0.95, 1.0))?;
         Ok((found, covered))
     }

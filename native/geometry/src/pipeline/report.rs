@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::carried::CarriedReport;
 use super::clock::Step;
-use super::flow::Flowed;
+use super::flowed::Flowed;
 use super::mirror::Plane;
 use super::settings::Settings;
 use crate::measure::Topology;
