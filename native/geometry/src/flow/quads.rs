@@ -336,6 +336,26 @@ mod tests {
     }
 
     #[test]
+    fn strips_are_taken_out_until_the_count_is_reached() {
+        let map = radial_map(shapes::blob(1, 20));
+        let marked = HalfedgeMap::filled(3 * map.mesh().n_faces(), false);
+        let settings = Settings::new(400);
+        let found = flow(&map, guides(&marked), &settings, &Progress::none()).unwrap();
+        let n_before = found.mesh.n_faces();
+        let thinned = found.clone().thinned(200).unwrap();
+        let n = thinned.mesh.n_faces();
+        assert!(n.abs_diff(200) <= 4, "{n}");
+        assert_eq!(
+            (thinned.mesh.n_quads(), thinned.mesh.n_vertices()),
+            (n, n + 2)
+        );
+        assert_eq!(thinned.report.n_thinned, n_before - n);
+        assert_eq!(thinned.sphere.len(), n + 2);
+        let error = found.thinned(3).unwrap_err();
+        assert!(matches!(error, Error::Count { n_wanted: 3, .. }), "{error}");
+    }
+
+    #[test]
     fn a_cancelled_flow_says_so() {
         let token = CancelToken::new();
         token.cancel();

@@ -111,7 +111,8 @@ fn a_filter_and_a_distance_limit_what_is_found() {
     let mesh = shapes::blob(5, 8);
     let tree = Bvh::of_mesh(&mesh);
     let up = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).z > 0.0;
-    for p in points(&mut Random::new(5), 300, 1.5) {
+    let mut random = Random::new(5);
+    for p in points(&mut random, 300, 1.5) {
         let faces_up = |face: FaceId| up(mesh.triangle(face));
         let found = tree.closest_where(p, f64::INFINITY, faces_up).unwrap();
         let up: Vec<_> = mesh.face_ids().filter(|&f| faces_up(f)).collect();
@@ -127,6 +128,11 @@ fn a_filter_and_a_distance_limit_what_is_found() {
         let limit = found.distance_squared;
         assert_eq!(tree.closest_where(p, limit, faces_up), Some(found));
         assert_eq!(tree.closest_where(p, limit * 0.999, faces_up), None);
+        for hint in [found.face, FaceId(random.below(mesh.n_faces()) as u32)].map(Some) {
+            let near = |limit| tree.closest_where_near(p, limit, hint, faces_up);
+            assert_eq!(near(limit), Some(found));
+            assert_eq!(near(limit * 0.999), None);
+        }
     }
 }
 
