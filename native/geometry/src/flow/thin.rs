@@ -13,7 +13,8 @@ use crate::mesh::{FaceId, Id, PolygonMesh, VertexId};
 
 /// More quads than this never meet at a vertex.
 const MOST_VALENCE: usize = 7;
-/// How dear a rung of flat surface is beside one that turns by 60°: on flat ground short ones go first.
+/// What a rung costs on flat ground, where 1 less the cosine is what its turn costs: without it flat
+/// ground would lose its strips in any order.
 const FLAT: f64 = 0.1;
 
 impl Flow {
@@ -67,11 +68,11 @@ pub(super) fn n_irregular(n_vertices: usize, quads: &[[u32; 4]]) -> usize {
 #[derive(Clone, PartialEq, Debug)]
 struct Thinned {
     /// The corners of each quad, counter-clockwise.
-    pub quads: Vec<[u32; 4]>,
+    quads: Vec<[u32; 4]>,
     /// The vertex that each vertex of before became, in the middle of all that became it.
-    pub vertex_of: Vec<u32>,
+    vertex_of: Vec<u32>,
     /// How many vertices there are.
-    pub n_vertices: usize,
+    n_vertices: usize,
 }
 
 /// Takes strips out of a closed mesh of quads until there are as many quads as wanted, within
@@ -97,7 +98,7 @@ fn thin(
         let fitting = strips.iter().filter(|strip| strip.n_quads <= most);
         let mut fewer = fitting.filter_map(|strip| strip.collapsed(&thinned));
         let step = fewer.next()?;
-        places = middles(&step, &places);
+        places = step.middles(&places);
         for v in &mut thinned.vertex_of {
             *v = step.vertex_of[*v as usize];
         }
@@ -109,12 +110,18 @@ fn thin(
 
 impl Thinned {
     /// The middle of what became each vertex.
-    pub fn middles(&self, values: &[DVec3]) -> Vec<DVec3> {
-        middles(self, values)
+    fn middles(&self, values: &[DVec3]) -> Vec<DVec3> {
+        let mut sums = vec![(DVec3::ZERO, 0.0); self.n_vertices];
+        for (&v, &value) in self.vertex_of.iter().zip(values) {
+            let (sum, n) = &mut sums[v as usize];
+            *sum += value;
+            *n += 1.0;
+        }
+        sums.iter().map(|(sum, n)| *sum / *n).collect()
     }
 
     /// Seams over the new vertices, without those of which too little is left.
-    pub fn seams(&self, seams: Vec<Seam>) -> Vec<Seam> {
+    fn seams(&self, seams: Vec<Seam>) -> Vec<Seam> {
         let mut is_taken = vec![false; self.n_vertices];
         let kept = seams.into_iter().filter_map(|seam| {
             let seam = self.seam(seam)?;
@@ -137,14 +144,19 @@ impl Thinned {
         for (v, place) in seam.vertices.iter().zip(seam.at) {
             let new = VertexId(self.vertex_of[v.index()]);
             if vertices.last() == Some(&new) {
-                // The last place stays where a line ends; others are alike.
-                *at.last_mut()? = place;
+                // The first and the last place stay, where a line ends; others are alike.
+                if at.len() > 1 {
+                    *at.last_mut()? = place;
+                }
             } else {
                 vertices.push(new);
                 at.push(place);
             }
         }
         let is_closed = seam.line.is_closed();
+        if is_closed {
+            *at.last_mut()? = at[0] + seam.line.length();
+        }
         let mut sorted = vertices[usize::from(is_closed)..].to_vec();
         sorted.sort_unstable();
         let is_simple = sorted.windows(2).all(|pair| pair[0] != pair[1]);
@@ -155,16 +167,6 @@ impl Thinned {
             line: seam.line,
         })
     }
-}
-
-fn middles(thinned: &Thinned, values: &[DVec3]) -> Vec<DVec3> {
-    let mut sums = vec![(DVec3::ZERO, 0.0); thinned.n_vertices];
-    for (&v, &value) in thinned.vertex_of.iter().zip(values) {
-        let (sum, n) = &mut sums[v as usize];
-        *sum += value;
-        *n += 1.0;
-    }
-    sums.iter().map(|(sum, n)| *sum / *n).collect()
 }
 
 /// The quads that one cut through opposite edges crosses.
@@ -342,5 +344,12 @@ mod tests {
         assert_eq!(seams.len(), 1);
         assert_eq!(seams[0].vertices, [0, 1, 2].map(VertexId));
         assert_eq!(seams[0].at, [0.0, 2.0, 3.0]);
+        let ends = thinned.seams(vec![seam(&[1, 2, 3], false)]).swap_remove(0);
+        assert_eq!(ends.at, [0.0, 2.0]);
+        let closed = thinned
+            .seams(vec![seam(&[4, 0, 1, 3, 4], true)])
+            .swap_remove(0);
+        assert_eq!(closed.vertices, [0, 1, 2, 0].map(VertexId));
+        assert_eq!(closed.at[3], closed.at[0] + closed.line.length());
     }
 }
