@@ -283,9 +283,10 @@ impl Ground<'_> {
             mirror: self.doubled.as_ref(),
         };
         let found = flow::flow(&self.even, guides, settings, &progress.part("", 0.0, 0.95))?;
-        let found = match settings.may_exceed {
-            true => found.thinned(self.asked.n_quads)?,
-            false => found,
+        let found = if settings.may_exceed {
+            found.thinned(self.asked.n_quads)?
+        } else {
+            found
         };
         let covered = embed::cover(&found.mesh, &found.sphere, &progress.part("", 0.95, 1.0))?;
         Ok((found, covered))
