@@ -19,7 +19,7 @@ const LEAST_TRIANGLES: usize = 16_000;
 /// For few quads that is more than they can show.
 const MOST_TRIANGLES_PER_QUAD: usize = 40;
 /// And at least this many per quad: fewer place quads less well, more only cost time.
-const TRIANGLES_PER_QUAD: f64 = 3.5;
+const TRIANGLES_PER_QUAD: f64 = 3.0;
 
 /// Cosine of the most by which triangles turn when vertices are set onto marked edges: 60°.
 const LEAST_COSINE: f64 = 0.5;
