@@ -17,7 +17,7 @@ const LENGTH: i32 = 9;
 /// A rack's size in voxels.
 const RACK: IVec3 = IVec3::new(2, 24, 21);
 
-fn is_inside(cell: IVec3) -> bool {
+fn is_of_body(cell: IVec3) -> bool {
     let within = |from: IVec3, to: IVec3| cell.cmpge(from).all() && cell.cmplt(to).all();
     let is_finger = |&[x, z]: &[i32; 2]| {
         within(
@@ -82,7 +82,7 @@ fn border(size: IVec3, is_inside: impl Fn(IVec3) -> bool + Copy, n_smoothings: u
 
 #[test]
 fn fingers_thinner_than_three_quads_have_tips_and_rings() {
-    let mesh = border(BODY + IVec3::Y * LENGTH, is_inside, 4);
+    let mesh = border(BODY + IVec3::Y * LENGTH, is_of_body, 4);
     let run = remesh(
         Input::new(&mesh),
         &Settings::default(),

@@ -183,7 +183,8 @@ pub(super) fn tolerance(n_wanted: usize) -> usize {
 ///
 /// The surface's triangles should be even, and some times as many as the quads. What is returned
 /// is closed, without doubled edges, and has as many quads as wanted within 2 %, or more where the
-/// settings admit them; whether it can be laid on the sphere is not known yet. Costs a second or two for 2,000 quads.
+/// settings admit them; whether it can be laid on the sphere is not known yet. Costs a second or two
+/// for 2,000 quads.
 ///
 /// # Errors
 /// [`enum@Error`].

@@ -106,36 +106,31 @@ fn split(mesh: &TriangleMesh, field: &mut OrientationField, sizes: &FaceMap<f64>
             continue;
         }
         let n = index.unsigned_abs() as usize;
-        let n_free = |reach: &Reach| {
-            reach
-                .seen
-                .iter()
-                .filter(|&&u| field.indices[u] == 0)
-                .count()
-        };
+        let is_free = |u: &VertexId| field.indices[*u] == 0;
         let mut radius = SPLIT_REACH;
-        reach.spread(v, radius);
-        // Around a spike edges may be longer than that, and one vertex would keep all units.
-        while n_free(&reach) < n && reach.seen.len() < mesh.n_vertices() {
-            radius *= 2.0;
+        let free = loop {
             reach.spread(v, radius);
-        }
-        for place in places(&reach, field, (v, n)) {
+            let free: Vec<VertexId> = reach.seen.iter().copied().filter(is_free).collect();
+            // Around a spike edges may be longer than that, and one vertex would keep all units.
+            if free.len() >= n || reach.seen.len() == mesh.n_vertices() {
+                break free;
+            }
+            radius *= 2.0;
+        };
+        for place in places(&reach, &free, (v, n)) {
             shift(field, mesh, &reach.path(place), index.signum());
         }
     }
 }
 
-/// Up to `n` regular vertices on a circle round `v`, far from each other, for which `n`
+/// Up to `n` of the free vertices on a circle round `v`, far from each other, for which `n`
 /// singularities are about an edge of a quad apart.
-fn places(reach: &Reach, field: &OrientationField, (v, n): (VertexId, usize)) -> Vec<VertexId> {
+fn places(reach: &Reach, free: &[VertexId], (v, n): (VertexId, usize)) -> Vec<VertexId> {
     let radius = SPLIT_DISTANCE / (2.0 * sin(PI / n as f64));
     let size = reach.size_at(v);
-    let is_free = |u: &VertexId| field.indices[*u] == 0;
-    let free: Vec<VertexId> = reach.seen.iter().copied().filter(is_free).collect();
     let mut places: Vec<VertexId> = Vec::new();
     let mut rooms = vec![0.0; free.len()];
-    for (room, &u) in rooms.iter_mut().zip(&free) {
+    for (room, &u) in rooms.iter_mut().zip(free) {
         *room = -(reach.distances[u] - radius).abs();
     }
     let misfits = rooms.clone();

@@ -157,17 +157,12 @@ mod tests {
     #![allow(clippy::float_cmp)] // No spiral is exactly none.
 
     use super::*;
+    use crate::flow::thin;
     use crate::sphere::{quad_sphere, quad_sphere_counts};
 
     fn quads_of(n: usize) -> (Vec<[u32; 4]>, usize) {
         let sphere = quad_sphere(quad_sphere_counts(n));
-        let quads = (0..sphere.n_faces())
-            .map(|f| {
-                let face = sphere.face(crate::mesh::FaceId(f as u32));
-                [face[0].0, face[1].0, face[2].0, face[3].0]
-            })
-            .collect();
-        (quads, sphere.n_vertices())
+        (thin::quads_of(&sphere), sphere.n_vertices())
     }
 
     #[test]

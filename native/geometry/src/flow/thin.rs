@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::quads::{Error, Flow, Report, tolerance};
 use super::strips::{Leaving, doubled_edges, follow_strips};
-use crate::measure::Seam;
+use crate::measure::{Groups, Seam};
 use crate::mesh::{FaceId, Id, PolygonMesh, VertexId};
 
 /// More quads than this never meet at a vertex.
@@ -47,7 +47,8 @@ impl Flow {
     }
 }
 
-fn quads_of(mesh: &PolygonMesh) -> Vec<[u32; 4]> {
+/// The corners of the faces of a mesh of quads.
+pub(super) fn quads_of(mesh: &PolygonMesh) -> Vec<[u32; 4]> {
     let corners = |face: FaceId| {
         let face = mesh.face(face);
         [0, 1, 2, 3].map(|i| face[i].0)
@@ -57,11 +58,17 @@ fn quads_of(mesh: &PolygonMesh) -> Vec<[u32; 4]> {
 
 /// How many vertices have not four quads.
 pub(super) fn n_irregular(n_vertices: usize, quads: &[[u32; 4]]) -> usize {
+    let valences = valences(n_vertices, quads).into_iter();
+    valences.filter(|&n| n != 4).count()
+}
+
+/// How many quads each vertex has.
+fn valences(n_vertices: usize, quads: &[[u32; 4]]) -> Vec<usize> {
     let mut valences = vec![0; n_vertices];
     for &v in quads.iter().flatten() {
         valences[v as usize] += 1;
     }
-    valences.into_iter().filter(|&n| n != 4).count()
+    valences
 }
 
 /// Fewer quads.
@@ -214,24 +221,12 @@ impl Strip {
 
     /// Quads without this strip's, if they are a simple sphere.
     fn collapsed(&self, before: &Thinned) -> Option<Thinned> {
-        let mut parents: Vec<u32> = (0..before.n_vertices as u32).collect();
+        let mut groups = Groups::new(before.n_vertices);
         for rung in &self.rungs {
-            let [a, b] = rung.map(|v| root(&mut parents, v));
-            parents[a.max(b) as usize] = a.min(b);
+            let [a, b] = rung.map(|v| v as usize);
+            groups.link(a, b);
         }
-        let mut vertex_of = vec![u32::MAX; before.n_vertices];
-        let mut n_vertices = 0;
-        for v in 0..before.n_vertices {
-            // A root comes before all that became it.
-            let root = root(&mut parents, v as u32) as usize;
-            if root == v {
-                vertex_of[v] = n_vertices;
-                n_vertices += 1;
-            } else {
-                vertex_of[v] = vertex_of[root];
-            }
-        }
-        let n_vertices = n_vertices as usize;
+        let (vertex_of, n_vertices) = groups.numbered();
         let moved = before
             .quads
             .iter()
@@ -241,11 +236,8 @@ impl Strip {
         let is_gone = before.quads.len() - quads.len() == self.n_quads;
         // A sphere of quads has two vertices more than quads, and fewer where it is pinched.
         let is_whole = n_vertices == quads.len() + 2;
-        let mut valences = vec![0; n_vertices];
-        for &v in quads.iter().flatten() {
-            valences[v as usize] += 1;
-        }
-        let is_sound = valences.iter().all(|n| (3..=MOST_VALENCE).contains(n));
+        let mut valences = valences(n_vertices, &quads).into_iter();
+        let is_sound = valences.all(|n| (3..=MOST_VALENCE).contains(&n));
         (is_gone && is_whole && is_sound && doubled_edges(&quads, n_vertices) == 0).then_some(
             Thinned {
                 quads,
@@ -254,16 +246,6 @@ impl Strip {
             },
         )
     }
-}
-
-/// The one that stands for all that a vertex has met, with shorter ways left behind.
-fn root(parents: &mut [u32], mut v: u32) -> u32 {
-    while parents[v as usize] != v {
-        let parent = parents[v as usize];
-        parents[v as usize] = parents[parent as usize];
-        v = parent;
-    }
-    v
 }
 
 fn normals(quads: &[[u32; 4]], places: &[DVec3]) -> Vec<DVec3> {

@@ -14,10 +14,11 @@ impl Groups {
         }
     }
 
-    /// Joins the groups of two numbers.
-    pub fn link(&mut self, a: usize, b: usize) {
+    /// Joins the groups of two numbers; whether they were apart.
+    pub fn link(&mut self, a: usize, b: usize) -> bool {
         let [a, b] = [self.root(a), self.root(b)];
         self.parents[a.max(b)] = a.min(b) as u32;
+        a != b
     }
 
     /// The smallest number of the group.
@@ -55,8 +56,9 @@ mod tests {
     fn linked_numbers_share_a_group() {
         let mut groups = Groups::new(6);
         for (a, b) in [(4, 5), (1, 4), (5, 5), (0, 2)] {
-            groups.link(a, b);
+            assert_eq!(groups.link(a, b), a != b);
         }
+        assert!(!groups.link(1, 5));
         assert_eq!(groups.numbered(), (vec![0, 1, 0, 2, 1, 1], 3));
     }
 }

@@ -166,8 +166,8 @@ impl Bvh {
     /// # Panics
     /// When there is no face `hint`, or `p` is not finite.
     pub fn closest_near(&self, p: DVec3, hint: FaceId) -> Closest {
-        let start = closest_on_triangle(p, self.triangle(hint)).of(hint);
-        search::closest(self, p, start, &|_| true)
+        self.closest_where_near(p, f64::INFINITY, Some(hint), |_| true)
+            .expect("a tree with triangles, a finite point")
     }
 
     /// The closest point among the accepted faces no farther than the given squared distance.

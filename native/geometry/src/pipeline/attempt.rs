@@ -59,13 +59,14 @@ impl Attempt {
                 settings.sizes.adaptivity = share_of(style, 0.5);
             }
             Self::Even => settings.sizes.adaptivity = 0.0,
-            Self::Thinned | Self::Denser | Self::Densest => {
-                settings.may_exceed = true;
-                settings.n_quads *= match self {
-                    Self::Denser => 2,
-                    Self::Densest => 4,
-                    _ => 1,
-                };
+            Self::Thinned => settings.may_exceed = true,
+            Self::Denser => {
+                settings = Self::Thinned.settings(style);
+                settings.n_quads *= 2;
+            }
+            Self::Densest => {
+                settings = Self::Thinned.settings(style);
+                settings.n_quads *= 4;
             }
         }
         settings

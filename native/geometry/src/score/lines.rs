@@ -42,7 +42,9 @@ pub fn chains(surface: &Surface, progress: &Progress) -> Result<Chains, Cancelle
         progress.check()?;
         let edge = edges.of_corner[corner] as usize;
         match onward {
-            Some(next) => groups.link(edge, edges.of_corner[next] as usize),
+            Some(next) => {
+                groups.link(edge, edges.of_corner[next] as usize);
+            }
             None => is_end[edge] = true,
         }
     }

@@ -4,7 +4,8 @@ use glam::IVec2;
 
 use super::NotASphere;
 use crate::flow::complex::{Complex, Turn};
-use crate::mesh::{FaceId, HalfedgeId, Id, VertexId};
+use crate::measure::Groups;
+use crate::mesh::{FaceId, HalfedgeId, Id};
 
 /// The halfedges of a spanning tree of least length, shortest first.
 pub(super) fn shortest_tree(complex: &Complex) -> Vec<HalfedgeId> {
@@ -14,29 +15,9 @@ pub(super) fn shortest_tree(complex: &Complex) -> Vec<HalfedgeId> {
         .collect();
     let length = |h: HalfedgeId| complex.start[h].length_squared();
     edges.sort_by(|&a, &b| length(a).total_cmp(&length(b)).then(a.cmp(&b)));
-    let mut groups = Groups((0..complex.n_vertices()).collect());
-    edges.retain(|&h| groups.join(complex.origins[h], complex.target(h)));
+    let mut groups = Groups::new(complex.n_vertices());
+    edges.retain(|&h| groups.link(complex.origins[h].index(), complex.target(h).index()));
     edges
-}
-
-/// Disjoint sets of vertices.
-struct Groups(Vec<usize>);
-
-impl Groups {
-    fn root(&mut self, mut i: usize) -> usize {
-        while self.0[i] != i {
-            self.0[i] = self.0[self.0[i]];
-            i = self.0[i];
-        }
-        i
-    }
-
-    /// Whether the two were apart; they no longer are.
-    fn join(&mut self, a: VertexId, b: VertexId) -> bool {
-        let [a, b] = [a, b].map(|v| self.root(v.index()));
-        self.0[a] = b;
-        a != b
-    }
 }
 
 /// The row of each halfedge over the vectors of the tree, and the face whose sum stays open.
