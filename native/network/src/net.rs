@@ -220,10 +220,11 @@ fn pooled(fine: &[f32], level: &Level) -> Vec<f32> {
 /// For each vertex of the next finer level, what its parent knows.
 fn handed_down(coarse: &[f32], level: &Level) -> Vec<f32> {
     let width = coarse.len() / level.graph.n_vertices();
-    let rows = level.parents.iter().map(|&p| p as usize * width);
-    rows.flat_map(|start| &coarse[start..][..width])
-        .copied()
-        .collect()
+    let mut rows = Vec::with_capacity(level.parents.len() * width);
+    for &parent in &level.parents {
+        rows.extend_from_slice(&coarse[parent as usize * width..][..width]);
+    }
+    rows
 }
 
 #[cfg(test)]
