@@ -19,7 +19,7 @@ use crate::interrupt::Interrupt;
 use crate::outputs::Outputs;
 use crate::place::Place;
 use crate::predictor::read_weights;
-use crate::train::read_settings;
+use crate::prepare::thesis_settings;
 
 #[derive(Args, Debug)]
 pub struct Evaluate {
@@ -39,7 +39,8 @@ pub struct Evaluate {
     #[arg(long, value_name = "SET")]
     pub other: Vec<PathBuf>,
     /// What to measure beside network, radial projection and solver, which are measured always: the
-    /// thesis's network is trained first, on the shapes trained on, at most N of them
+    /// thesis's network is trained first, on the shapes trained on, at most N of them, from the set's
+    /// targets where they were made with the same settings
     #[arg(long, value_enum, value_name = "NAME")]
     pub baseline: Option<Baseline>,
     /// The size of the thesis's network; what it leaves out has its default
@@ -109,11 +110,12 @@ pub fn evaluate(arguments: &Evaluate, interrupt: &Interrupt) -> Result<(), Error
     if shapes.is_empty() {
         return Err(Error::NoShapes);
     }
+    let thesis = arguments.thesis_asked((&set, &others))?;
     let report = with_bar(token, |progress| {
-        let (subject, from) = match arguments.baseline {
-            Some(Baseline::Thesis) => {
+        let (subject, from) = match thesis {
+            Some(settings) => {
                 let stage = progress.part("", 0.0, 0.5);
-                (with_thesis(subject, (arguments, &set, &all), &stage)?, 0.5)
+                (with_thesis(subject, (&set, &all), settings, &stage)?, 0.5)
             }
             None => (subject, 0.0),
         };
@@ -128,16 +130,24 @@ pub fn evaluate(arguments: &Evaluate, interrupt: &Interrupt) -> Result<(), Error
     outputs.publish(token)
 }
 
+/// Whether the targets of the thesis are those of a set, in words.
+fn whose_targets(set: &Set, settings: &thesis::Settings) -> &'static str {
+    match &set.head().targets {
+        Some(targets) if *targets == settings.chamfer => {
+            "the thesis's targets are those of the set"
+        }
+        Some(_) => "the thesis's targets are made now, the set's were made with other settings",
+        None => "the thesis's targets are made now, the set has none",
+    }
+}
+
 /// Trains the network of the thesis on the shapes of the set that training saw.
 fn with_thesis(
     subject: Subject,
-    (arguments, set, shapes): (&Evaluate, &Set, &[Asked<'_>]),
+    (set, shapes): (&Set, &[Asked<'_>]),
+    settings: thesis::Settings,
     progress: &Progress,
 ) -> Result<Subject, Error> {
-    let settings = match &arguments.thesis {
-        None => thesis::Settings::default(),
-        Some(path) => read_settings(path, thesis::Settings::from_toml)?,
-    };
     let seen = shapes.iter().filter(|asked| asked.side == Side::Train);
     let seen: Vec<_> = seen.map(|asked| asked.which).collect();
     if seen.is_empty() {
@@ -176,6 +186,22 @@ fn write_meshes(
 }
 
 impl Evaluate {
+    /// The settings of the thesis's pipeline, if it is to be measured; says whose targets it gets.
+    fn thesis_asked(
+        &self,
+        (set, others): (&Set, &[Set]),
+    ) -> Result<Option<thesis::Settings>, Error> {
+        let Some(Baseline::Thesis) = self.baseline else {
+            return Ok(None);
+        };
+        let settings = thesis_settings(self.thesis.as_deref())?;
+        let paths = [&self.set].into_iter().chain(&self.other);
+        for (path, set) in paths.zip([set].into_iter().chain(others)) {
+            eprintln!("{}: {}", path.display(), whose_targets(set, &settings));
+        }
+        Ok(Some(settings))
+    }
+
     fn asks_for(&self, asked: &Asked<'_>) -> bool {
         match self.split {
             Which::Train => asked.side == Side::Train,

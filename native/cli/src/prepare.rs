@@ -1,9 +1,10 @@
 //! `orbflow prepare`: meshes and made shapes become a set to train on and to measure on.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use orbflow_training::prepare::{Settings, prepare as prepare_set};
+use orbflow_training::thesis;
 
 use crate::bar::with_bar;
 use crate::error::Error;
@@ -11,6 +12,7 @@ use crate::interrupt::Interrupt;
 use crate::outputs::Outputs;
 use crate::parsers::whole;
 use crate::place::Place;
+use crate::train::read_settings;
 
 #[derive(Args, Debug)]
 pub struct Prepare {
@@ -33,9 +35,23 @@ pub struct Prepare {
     /// The licence of meshes whose folder names none
     #[arg(long, value_name = "TEXT")]
     pub licence: Option<String>,
+    /// Also make what the thesis's network learns from, for `orbflow evaluate --baseline thesis`, and
+    /// keep it in the set
+    #[arg(long, value_enum, value_name = "NAME")]
+    pub targets: Option<Targets>,
+    /// How targets are made, in its part [chamfer]; what it leaves out has its default
+    #[arg(long, value_name = "T.toml", requires = "targets")]
+    pub thesis: Option<PathBuf>,
     /// Write the manifest as JSON: each source, its licence, side and counts, and what was left out
     #[arg(long, value_name = "M.json")]
     pub manifest: Option<Place>,
+}
+
+/// What can be made for a network to learn from.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
+pub enum Targets {
+    /// The thesis's: offsets of an even sphere that lower its Chamfer distance to the shape
+    Chamfer,
 }
 
 /// Makes the set, or what is missing of it.
@@ -47,6 +63,10 @@ pub fn prepare(arguments: &Prepare, interrupt: &Interrupt) -> Result<(), Error> 
         n_procedural: arguments.procedural,
         seed: arguments.seed,
         licence: arguments.licence.clone(),
+        targets: match arguments.targets {
+            None => None,
+            Some(Targets::Chamfer) => Some(thesis_settings(arguments.thesis.as_deref())?.chamfer),
+        },
     };
     let (places, output) = (&arguments.places, &arguments.output);
     let set = with_bar(token, |progress| {
@@ -62,4 +82,12 @@ pub fn prepare(arguments: &Prepare, interrupt: &Interrupt) -> Result<(), Error> 
         outputs.write_report(place, &manifest)?;
     }
     outputs.publish(token)
+}
+
+/// What a file says of the thesis's pipeline; the defaults without one.
+pub fn thesis_settings(path: Option<&Path>) -> Result<thesis::Settings, Error> {
+    match path {
+        None => Ok(thesis::Settings::default()),
+        Some(path) => Ok(read_settings(path, thesis::Settings::from_toml)?),
+    }
 }

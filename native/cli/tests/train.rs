@@ -138,6 +138,43 @@ fn baselines_are_those_that_have_to_be_asked_for() {
 }
 
 #[test]
+fn the_sets_targets_are_taken_where_they_were_made_with_the_same_settings() {
+    let folder = Folder::new();
+    let thesis = |name: &str, rate: f64| {
+        let network = "width = 4\nn_steps = 1\n[chamfer]\nn_steps = 1\nn_samples = 50\n";
+        folder.write(name, &format!("{network}rate = {rate}\n"))
+    };
+    let (same, other) = (thesis("same.toml", 0.25), thesis("other.toml", 0.5));
+    let [set, report] = ["a.set", "evaluation.json"].map(|name| folder.path(name));
+    let prepare = ["prepare", "--procedural", "7", "-o", &set];
+    let targets = ["--targets", "chamfer", "--thesis"];
+    let done = run(&[&prepare[..], &targets, &[&same]].concat());
+    assert_eq!(done.code, 0, "{}", done.err);
+    for (settings, words) in [
+        (&same, "a.set: the thesis's targets are those of the set"),
+        (
+            &other,
+            "are made now, the set's were made with other settings",
+        ),
+    ] {
+        let evaluate = ["evaluate", &set, "--report", &report, "--split", "test"];
+        let baseline = ["--baseline", "thesis", "--thesis", settings];
+        let done = run(&[&evaluate[..], &baseline].concat());
+        assert_eq!(done.code, 0, "{}", done.err);
+        assert!(done.err.contains(words), "{}", done.err);
+        let proposals = &json(&report)["sides"]["test"]["overall"]["proposals"];
+        assert!(proposals["thesis_target"]["energy"].is_f64(), "{proposals}");
+    }
+    let refused = run(&[&prepare[..], &targets, &[&other]].concat());
+    assert_eq!(refused.code, 3);
+    let words = r#""rate":0.25,"n_samples":50"#;
+    assert!(refused.err.contains(words), "{}", refused.err);
+    let alone = run(&[&prepare[..], &["--thesis", &same]].concat());
+    assert_eq!(alone.code, 2);
+    assert!(alone.err.contains("--targets <NAME>"), "{}", alone.err);
+}
+
+#[test]
 fn a_log_is_drawn_anew() {
     let folder = Folder::new();
     let missing = run(&["curve", &folder.path("no run")]);

@@ -5,8 +5,8 @@
 //!                                      └──▶ evaluate ─▶ report
 //! ```
 //!
-//! There are no targets: the [`loss`] is the distortion of the proposed map. What was tried and
-//! what it reached is in `docs/training.md`.
+//! The network has no targets: its [`loss`] is the distortion of the proposed map. Targets in a set are
+//! those of the [`thesis`]. What was tried and what it reached is in `docs/training.md`.
 
 pub mod curve;
 pub mod engine;

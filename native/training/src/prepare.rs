@@ -12,7 +12,10 @@ use thiserror::Error;
 use crate::parts::{Parts, split};
 use crate::sample::{n_faces_for, training_level};
 use crate::set::{Head, Set, SetError, Shape, Source, Writer, WriterError};
+use crate::settings::SettingsError;
 use crate::sources::{Found, Item, SourceError, items};
+use crate::thesis::chamfer;
+use crate::thesis::target::{N_FACES, Reading, ThesisError};
 
 /// Parts of fewer triangles are boxes and wedges: any map of them will do.
 const LEAST_FACES: usize = 32;
@@ -26,7 +29,7 @@ const LONGEST_REASON: usize = 300;
 const N_AT_ONCE: usize = 32;
 
 /// What a set is made of.
-#[derive(Clone, PartialEq, Eq, Debug)]
+#[derive(Clone, PartialEq, Debug)]
 pub struct Settings {
     /// How many faces the level has that is collapsed.
     pub n_faces: usize,
@@ -36,6 +39,8 @@ pub struct Settings {
     pub seed: u64,
     /// The licence of files whose folder names none.
     pub licence: Option<String>,
+    /// How targets of the thesis are made, if they are to be.
+    pub targets: Option<chamfer::Settings>,
 }
 
 impl Default for Settings {
@@ -45,6 +50,18 @@ impl Default for Settings {
             n_procedural: 0,
             seed: 0,
             licence: None,
+            targets: None,
+        }
+    }
+}
+
+impl Settings {
+    fn check(&self) -> Result<(), PrepareError> {
+        let n_faces = self.n_faces;
+        match &self.targets {
+            None => Ok(()),
+            Some(_) if n_faces < N_FACES => Err(PrepareError::Coarse { n_faces }),
+            Some(targets) => Ok(targets.check()?),
         }
     }
 }
@@ -52,6 +69,18 @@ impl Default for Settings {
 /// Why a set is not made, or not to its end.
 #[derive(Debug, Error)]
 pub enum PrepareError {
+    /// Targets cannot be made so.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// Levels have too few faces for targets.
+    #[error(
+        "levels of {n_faces} faces are too coarse for targets; prepare the set with --faces {N_FACES} \
+         or more"
+    )]
+    Coarse {
+        /// How many they are to have.
+        n_faces: usize,
+    },
     /// There is nothing to make it from.
     #[error(transparent)]
     Source(#[from] SourceError),
@@ -71,7 +100,8 @@ pub enum PrepareError {
     },
 }
 
-/// Makes a set of the meshes in some places and of made shapes, or goes on where it was cut.
+/// Makes a set of the meshes in some places and of made shapes, or goes on where it was cut. Targets
+/// are made where the settings ask for them.
 ///
 /// The same bytes for any number of threads, and with any number of cuts.
 ///
@@ -84,6 +114,7 @@ pub fn prepare(
     output: &Path,
     progress: &Progress,
 ) -> Result<Set, PrepareError> {
+    settings.check()?;
     let procedural = (settings.n_procedural, settings.seed);
     let items = items(given, procedural, settings.licence.as_deref())?;
     let head = Head {
@@ -92,6 +123,7 @@ pub fn prepare(
         seed: settings.seed,
         licence: settings.licence.clone(),
         n_sources: items.len(),
+        targets: settings.targets.clone(),
     };
     let names: Vec<&str> = items.iter().map(|item| item.name.as_str()).collect();
     let mut writer = Writer::begin_or_resume(output, &head, &names)?;
@@ -104,8 +136,17 @@ pub fn prepare(
             .at(n_done as f64 / n_sources as f64)
             .map_err(stop)?;
         let chunk = &items[n_done..n_sources.min(n_done + N_AT_ONCE)];
-        let made = chunk.par_iter().map(|item| made(item, settings.n_faces));
-        for (source, shapes) in made.collect::<Vec<_>>() {
+        let made = chunk.par_iter().map(|item| {
+            let (mut source, mut shapes) = made(item, settings.n_faces);
+            if let Some(targets) = &settings.targets {
+                source
+                    .left_out
+                    .extend(add_targets(&mut shapes, targets, &progress)?);
+            }
+            Ok((source, shapes))
+        });
+        let made = made.collect::<Result<Vec<_>, Cancelled>>();
+        for (source, shapes) in made.map_err(stop)? {
             writer.append(source, &shapes)?;
         }
     }
@@ -154,6 +195,24 @@ fn made(item: &Item, n_faces: usize) -> (Source, Vec<Shape>) {
     (source, shapes)
 }
 
+/// Makes the targets of the shapes of a source; says of those without one why not.
+fn add_targets(
+    shapes: &mut [Shape],
+    settings: &chamfer::Settings,
+    progress: &Progress,
+) -> Result<Vec<String>, Cancelled> {
+    let mut left_out = Vec::new();
+    for (i, shape) in shapes.iter_mut().enumerate() {
+        let reading = Reading::new(&shape.level);
+        match reading.and_then(|reading| reading.target(settings, progress)) {
+            Ok(target) => shape.target = Some(target),
+            Err(ThesisError::Cancelled(cancelled)) => return Err(cancelled),
+            Err(error) => left_out.push(format!("the target of part {i}: {error}")),
+        }
+    }
+    Ok(left_out)
+}
+
 /// The largest usable parts; says of the others why not.
 fn chosen(parts: Parts, left_out: &mut Vec<String>) -> Vec<TriangleMesh> {
     let Parts {
@@ -194,5 +253,9 @@ fn shape(part: TriangleMesh, n_faces: usize) -> Result<Shape, String> {
         part.clone()
     };
     let level = training_level(part, n_faces).map_err(|e| e.to_string())?;
-    Ok(Shape { whole, level })
+    Ok(Shape {
+        whole,
+        level,
+        target: None,
+    })
 }

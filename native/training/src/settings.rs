@@ -82,13 +82,7 @@ impl Settings {
             ("batch", batch),
             ("interval", interval),
         ] {
-            if *found == 0 {
-                return Err(SettingsError::Range {
-                    name,
-                    found: found.to_string(),
-                    wanted: "1 or more",
-                });
-            }
+            check_count(name, *found)?;
         }
         // More than 1 is what burn refuses; it would also diverge.
         if !(*rate > 0.0 && *rate <= 1.0) {
@@ -105,4 +99,16 @@ impl Settings {
         };
         Ok(header.check()?)
     }
+}
+
+/// Checks that there is one at least.
+pub(crate) fn check_count(name: &'static str, found: usize) -> Result<(), SettingsError> {
+    if found > 0 {
+        return Ok(());
+    }
+    Err(SettingsError::Range {
+        name,
+        found: found.to_string(),
+        wanted: "1 or more",
+    })
 }

@@ -3,6 +3,9 @@
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, mpsc};
+use std::thread;
+use std::time::Duration;
 
 use flate2::Compression;
 use flate2::write::DeflateEncoder;
@@ -12,6 +15,8 @@ use orbflow_geometry::progress::{CancelToken, Progress};
 use orbflow_training::prepare::{PrepareError, Settings, prepare};
 use orbflow_training::set::{Set, Source, Split};
 use orbflow_training::shapes::shape;
+use orbflow_training::thesis::chamfer;
+use orbflow_training::thesis::target::{Reading, sphere};
 use rawzip::path::EntryPath;
 use rawzip::{CompressionMethod, ZipArchiveWriter};
 use tempfile::TempDir;
@@ -160,6 +165,127 @@ fn neither_threads_nor_cuts_change_a_byte() {
     fs::write(path("cut.set"), &one[..one.len() / 2]).unwrap();
     drop(prepared(&models, &path("cut.set")));
     assert!(one == fs::read(path("cut.set")).unwrap());
+}
+
+/// Seven made shapes with targets of two steps.
+fn with_targets() -> Settings {
+    let targets = chamfer::Settings {
+        n_steps: 2,
+        n_samples: 50,
+        ..chamfer::Settings::default()
+    };
+    Settings {
+        n_faces: 1_000,
+        targets: Some(targets),
+        ..settings()
+    }
+}
+
+fn targeted(settings: &Settings, output: &Path) -> Set {
+    let set = prepare(&[], settings, output, &Progress::none());
+    set.expect("there is something to prepare")
+}
+
+#[test]
+fn neither_threads_nor_cuts_change_a_byte_of_targets() {
+    let folder = TempDir::new().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    for (threads, name) in [(1, "one.set"), (2, "two.set")] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let make = || drop(targeted(&with_targets(), &path(name)));
+        pool.unwrap().install(make);
+    }
+    let one = fs::read(path("one.set")).unwrap();
+    assert!(one == fs::read(path("two.set")).unwrap());
+
+    fs::write(path("cut.set"), &one[..one.len() / 2]).unwrap();
+    drop(targeted(&with_targets(), &path("cut.set")));
+    assert!(one == fs::read(path("cut.set")).unwrap());
+}
+
+#[test]
+fn targets_are_those_of_the_level_and_change_nothing_else() {
+    let folder = TempDir::new().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let settings = with_targets();
+    let none = Settings {
+        targets: None,
+        ..settings.clone()
+    };
+    let set = targeted(&settings, &path("a.set"));
+    let plain = targeted(&none, &path("b.set"));
+    let targets = settings.targets.as_ref().unwrap();
+    assert_eq!(set.shapes().len(), 7);
+    for (which, plain_which) in set.shapes().into_iter().zip(plain.shapes()) {
+        let (mut shape, plain) = (set.read(which).unwrap(), plain.read(plain_which).unwrap());
+        let target = shape.target.take().unwrap();
+        assert_eq!(shape.to_bytes(), plain.to_bytes());
+        assert_eq!(&target.settings, targets);
+        let surface = Reading::new(&shape.level).unwrap().surface;
+        let made = chamfer::offsets(&sphere(), &surface, targets, &Progress::none());
+        assert_eq!(target.offsets, made.unwrap());
+        assert!(target.offsets.iter().any(|x| *x != 0.0));
+    }
+}
+
+#[test]
+fn a_target_that_is_not_finite_is_left_out_and_named() {
+    let folder = TempDir::new().unwrap();
+    let mut settings = with_targets();
+    settings.targets.as_mut().unwrap().edge = 1e300;
+    let set = targeted(&settings, &folder.path().join("a.set"));
+    for which in set.shapes() {
+        assert_eq!(set.read(which).unwrap().target, None);
+        let reasons = which.source.left_out.join("; ");
+        assert!(
+            reasons.contains("the target of part 0: the target is not finite"),
+            "{reasons}"
+        );
+    }
+}
+
+#[test]
+fn targets_are_refused_where_none_could_be_made() {
+    let folder = TempDir::new().unwrap();
+    let output = folder.path().join("a.set");
+    let coarse = Settings {
+        n_faces: 978,
+        ..with_targets()
+    };
+    let mut wrong = with_targets();
+    wrong.targets.as_mut().unwrap().normal = f64::NAN;
+    for (settings, words) in [(coarse, "--faces 980"), (wrong, "chamfer.normal = NaN")] {
+        let error = prepare(&[], &settings, &output, &Progress::none()).unwrap_err();
+        assert!(error.to_string().contains(words), "{error}");
+    }
+    assert!(!output.exists());
+}
+
+#[test]
+fn a_run_that_makes_targets_can_be_cancelled() {
+    let folder = TempDir::new().unwrap();
+    let output = folder.path().join("a.set");
+    let mut endless = with_targets();
+    endless.targets.as_mut().unwrap().n_steps = usize::MAX;
+    let (begun, begins) = mpsc::channel();
+    let (token, begun) = (CancelToken::new(), Mutex::new(begun));
+    let listener = |_: &str, _: f64| {
+        let sent = begun.lock().map(|begun| begun.send(()));
+        assert!(sent.is_ok());
+    };
+    let cancelled = thread::scope(|scope| {
+        let to_cancel = token.clone();
+        scope.spawn(move || {
+            begins.recv().expect("preparing begins");
+            // By then the first shapes are at their targets.
+            thread::sleep(Duration::from_millis(300));
+            to_cancel.cancel();
+        });
+        let progress = Progress::new(token.clone(), &listener);
+        prepare(&[], &endless, &output, &progress)
+    });
+    let error = cancelled.unwrap_err().to_string();
+    assert!(error.contains("0 of 7 sources are in the set"), "{error}");
 }
 
 #[test]

@@ -20,7 +20,8 @@ use crate::parts::refined;
 use crate::prepare::WHOLE_FACES;
 use crate::sample::{Sample, SampleError};
 use crate::set::{Set, SetError, Shape, Which};
-use crate::thesis::{self, Example, Moved, Thesis, ThesisError};
+use crate::thesis::target::ThesisError;
+use crate::thesis::{self, Example, Moved, Thesis};
 
 /// What is evaluated.
 pub struct Subject {
@@ -130,7 +131,12 @@ pub enum OutcomeError {
 impl OutcomeError {
     /// Whether the user asked to stop.
     pub fn is_cancelled(&self) -> bool {
-        matches!(self, Self::Cancelled(_) | Self::Set(SetError::Cancelled(_)))
+        matches!(
+            self,
+            Self::Cancelled(_)
+                | Self::Set(SetError::Cancelled(_))
+                | Self::Thesis(ThesisError::Cancelled(_))
+        )
     }
 }
 
@@ -160,7 +166,8 @@ impl Subject {
     ) -> Result<Self, OutcomeError> {
         let make = |which: Which<'_>, shape: Shape| {
             let sample = Sample::of(which.name(), &shape.level, &self.levels)?;
-            Ok::<_, OutcomeError>(Example::new(&sample, &shape.level)?)
+            let example = Example::new(&sample, &shape.level)?;
+            Ok::<_, OutcomeError>(example.with_target(shape.target))
         };
         let examples = set.read_all(shapes, make, &progress.part("load", 0.0, 0.1))?;
         let stage = progress.part("", 0.1, 1.0);
@@ -198,10 +205,11 @@ impl Subject {
         let mut proposals = BTreeMap::from(proposals);
         if let Some(thesis) = &self.thesis {
             let example = Example::new(&sample, &shape.level)?;
+            let example = example.with_target(shape.target.clone());
             let vertices = sample.mesh.positions();
             let both = [
                 (Proposer::Thesis, thesis.predicted(&example, vertices)),
-                (Proposer::ThesisTarget, thesis.target(&example, vertices)),
+                (Proposer::ThesisTarget, thesis.target(&example, vertices)?),
             ];
             proposals.extend(both.map(|(who, moved)| (who, measured(&sample, &moved))));
         }

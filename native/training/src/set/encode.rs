@@ -5,6 +5,11 @@ use orbflow_geometry::hierarchy::{Collapse, CollapseHierarchy, HierarchyBuilder,
 use orbflow_geometry::mesh::{TriangleMesh, TriangleMeshError, VertexId};
 use thiserror::Error;
 
+use crate::thesis::chamfer;
+use crate::thesis::target::{N_POINTS, Target};
+
+/// How many bytes the offsets of a target take.
+const TARGET_BYTES: usize = 12 * N_POINTS;
 /// How many counts stand before a part.
 const N_COUNTS: usize = 6;
 
@@ -15,6 +20,8 @@ pub struct Shape {
     pub whole: TriangleMesh,
     /// The part brought to the faces of the set, and its collapses.
     pub level: CollapseHierarchy,
+    /// What the thesis is to learn of it, in sets that were asked for targets.
+    pub target: Option<Target>,
 }
 
 /// Why bytes are no part.
@@ -57,15 +64,30 @@ pub enum PartError {
         /// Vertices − edges + faces.
         euler: i64,
     },
+    /// There is a target, but nothing says how it was made.
+    #[error("it has a target, but the head has no settings of targets")]
+    TargetUnasked,
+    /// An offset of the target is no number.
+    #[error("offset {index} of the target is {found}")]
+    TargetNotFinite {
+        /// Which of them, counted from 0.
+        index: usize,
+        /// What it is.
+        found: f32,
+    },
     /// The collapses are not those of the mesh.
     #[error(transparent)]
     Hierarchy(#[from] HierarchyError),
 }
 
 impl Shape {
-    /// The bytes of a part.
+    /// The bytes of a part; of a target the offsets alone, last.
     pub fn to_bytes(&self) -> Vec<u8> {
-        let Self { whole, level } = self;
+        let Self {
+            whole,
+            level,
+            target,
+        } = self;
         let collapses = || (0..level.n_collapses()).map(|i| level.collapse(i));
         let n_rings = collapses().map(|collapse| collapse.ring.len()).sum();
         let counts: [usize; N_COUNTS] = [
@@ -91,23 +113,38 @@ impl Shape {
         }
         let rounds = (0..level.n_rounds()).map(|i| level.round(i).len() as u32);
         push_all(&mut bytes, rounds);
+        let offsets = target.iter().flat_map(|target| &target.offsets);
+        push_all(&mut bytes, offsets.map(|x| x.to_bits()));
         bytes
     }
 
-    /// Reads a part and checks all that it promises.
+    /// Reads a part and checks all that it promises; `targets` is how those of the set were made.
     ///
     /// # Errors
     /// [`PartError`].
-    pub fn from_bytes(bytes: &[u8]) -> Result<Self, PartError> {
+    pub fn from_bytes(
+        bytes: &[u8],
+        targets: Option<&chamfer::Settings>,
+    ) -> Result<Self, PartError> {
         let mut rest = Rest(bytes);
         let counts: Vec<usize> = rest.numbers(N_COUNTS)?.map(|n| n as usize).collect();
         let whole = rest.mesh(counts[0], counts[1])?;
         let mesh = rest.mesh(counts[2], counts[3])?;
         let level = rest.hierarchy(mesh, counts[4], counts[5])?;
-        match rest.0.len() {
-            0 => Ok(Self { whole, level }),
-            n_bytes => Err(PartError::Left { n_bytes }),
-        }
+        let target = match rest.0.len() {
+            0 => None,
+            TARGET_BYTES => {
+                let settings = targets.ok_or(PartError::TargetUnasked)?.clone();
+                let offsets = rest.offsets()?;
+                Some(Target { settings, offsets })
+            }
+            n_bytes => return Err(PartError::Left { n_bytes }),
+        };
+        Ok(Self {
+            whole,
+            level,
+            target,
+        })
     }
 }
 
@@ -134,6 +171,18 @@ impl<'a> Rest<'a> {
 
     fn ids(&mut self, n: usize) -> Result<Vec<VertexId>, PartError> {
         Ok(self.numbers(n)?.map(VertexId).collect())
+    }
+
+    /// The offsets of a target.
+    fn offsets(&mut self) -> Result<Vec<f32>, PartError> {
+        let offsets: Vec<f32> = self.numbers(3 * N_POINTS)?.map(f32::from_bits).collect();
+        match offsets.iter().position(|x| !x.is_finite()) {
+            None => Ok(offsets),
+            Some(index) => Err(PartError::TargetNotFinite {
+                index,
+                found: offsets[index],
+            }),
+        }
     }
 
     fn faces(&mut self, n: usize) -> Result<Vec<[VertexId; 3]>, PartError> {

@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::thesis::chamfer;
+
 /// What a set was asked for.
-#[derive(Clone, PartialEq, Eq, Debug, Serialize, Deserialize)]
+#[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Head {
     /// How many faces the level has that is collapsed.
@@ -18,6 +20,9 @@ pub struct Head {
     pub licence: Option<String>,
     /// How many sources there are to be.
     pub n_sources: usize,
+    /// How the targets of the thesis were made, if they were; a set without says nothing of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub targets: Option<chamfer::Settings>,
 }
 
 /// Whether training may see a shape.
@@ -65,7 +70,7 @@ pub struct Counts {
 }
 
 /// All that a set says of itself, to be read by people.
-#[derive(Clone, PartialEq, Eq, Debug, Serialize)]
+#[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct Manifest<'a> {
     /// What it was asked for.
     pub asked: &'a Head,

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!  0  8 bytes  "ORBFLOWS"
-//!  8  u32      version of this layout, 1; all numbers are little-endian
+//!  8  u32      version of this layout, 2 with targets and 1 without; all numbers are little-endian
 //! 12  u32      length h of the head
 //! 16  u64      FNV-1a of the head: against accidents, not against forgers
 //! 24  h bytes  head, JSON: see [`Head`]
@@ -14,7 +14,7 @@
 //! 16  u64      FNV-1a of the entry
 //! 24  u64      FNV-1a of the 24 bytes before
 //! 32  e bytes  entry of the manifest, JSON: see [`Source`]
-//!  +  p bytes  the parts, one after the other
+//!  +  p bytes  the parts, one after the other; each may end with its target
 //! ```
 //!
 //! A run that was cut leaves whole blocks and at most one that is not; [`Set::open`] passes over that
@@ -33,13 +33,23 @@ pub use read::{Set, SetError, Which};
 pub use write::{Writer, WriterError};
 
 const MAGIC: &[u8; 8] = b"ORBFLOWS";
-const VERSION: u32 = 1;
+/// Versions that are read. Sets without targets stay what every program can read.
+const PLAIN: u32 = 1;
+const WITH_TARGETS: u32 = 2;
 const BLOCK: &[u8; 4] = b"SRCE";
 /// The length of what stands before the head, and before the entry of a block.
 const FRONT: usize = 24;
 const BLOCK_FRONT: usize = 32;
 /// The longest text that is believed: an entry has three parts and a few sentences.
 const MAX_TEXT: usize = 1 << 20;
+
+/// The version of the layout of a set.
+fn version(head: &Head) -> u32 {
+    match head.targets {
+        None => PLAIN,
+        Some(_) => WITH_TARGETS,
+    }
+}
 
 /// The little-endian number in up to eight bytes.
 fn number(digits: &[u8]) -> u64 {

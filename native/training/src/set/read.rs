@@ -13,7 +13,7 @@ use thiserror::Error;
 
 use super::encode::{PartError, Shape};
 use super::manifest::{Head, Manifest, Source, Split};
-use super::{BLOCK, BLOCK_FRONT, FRONT, MAGIC, MAX_TEXT, VERSION, number};
+use super::{BLOCK, BLOCK_FRONT, FRONT, MAGIC, MAX_TEXT, PLAIN, WITH_TARGETS, number, version};
 
 /// Parts that are read between two reports of progress.
 const N_AT_ONCE: usize = 64;
@@ -54,7 +54,9 @@ pub enum SetError {
         path: PathBuf,
     },
     /// Made by another version.
-    #[error("{path} is a set of version {found}; this program reads version {VERSION}")]
+    #[error(
+        "{path} is a set of version {found}; this program reads versions {PLAIN} to {WITH_TARGETS}"
+    )]
     Version {
         /// The file.
         path: PathBuf,
@@ -200,7 +202,7 @@ impl Set {
             let at = which.at;
             return Err(SetError::Damaged { path, at, reason });
         }
-        Shape::from_bytes(&bytes).map_err(|cause| SetError::Part {
+        Shape::from_bytes(&bytes, self.head.targets.as_ref()).map_err(|cause| SetError::Part {
             path,
             name: which.source.name.clone(),
             part: which.part,
@@ -266,7 +268,7 @@ impl Reading {
             return Err(self.damaged(format!("{n_front} bytes are no head; {FRONT} would be")));
         }
         let found = number(&front[8..12]) as u32;
-        if found != VERSION {
+        if !(PLAIN..=WITH_TARGETS).contains(&found) {
             return Err(SetError::Version { path, found });
         }
         self.at = FRONT as u64;
@@ -276,7 +278,11 @@ impl Reading {
             return Err(self.damaged(format!("the head has {length} bytes, but {left} are left")));
         }
         let text = self.text(length)?;
-        let head = self.json(&text, number(&front[16..24]))?;
+        let head: Head = self.json(&text, number(&front[16..24]))?;
+        if found != version(&head) {
+            let reason = format!("a set of version {found} has no such head");
+            return Err(self.damaged(reason));
+        }
         self.at += length;
         Ok(head)
     }

@@ -1,7 +1,7 @@
 //! Writes a set, block by block.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use orbflow_network::weights::fnv;
@@ -10,7 +10,7 @@ use thiserror::Error;
 use super::encode::Shape;
 use super::manifest::{Counts, Head, Source};
 use super::read::{Set, SetError};
-use super::{BLOCK, MAGIC, VERSION};
+use super::{BLOCK, MAGIC, version};
 
 /// A set that is being written.
 #[derive(Debug)]
@@ -69,14 +69,22 @@ impl Writer {
             Err(error) if error.kind() == io::ErrorKind::NotFound => 0,
             Err(cause) => return Err(failed(cause)),
         };
+        let begun = if there == 0 {
+            Vec::new()
+        } else {
+            first_bytes(path, front.len()).map_err(failed)?
+        };
         // A run that was cut while it wrote the head left a part of it.
-        let is_new = there < front.len() as u64
-            && (there == 0 || front.starts_with(&fs::read(path).map_err(failed)?));
+        let is_new = begun.len() < front.len() && front.starts_with(&begun);
         let (n_done, end) = if is_new {
             (0, 0)
         } else {
             let set = Set::open(path)?;
-            check_same(path, (set.head(), head), (&set.sources(), names))?;
+            // By their bytes: numbers may lose their last bit on the way through text.
+            if begun != front {
+                return Err(other_head(path, set.head(), head));
+            }
+            check_names(path, &set.sources(), names)?;
             (set.sources().len(), set.end())
         };
         let mut open = OpenOptions::new();
@@ -145,7 +153,7 @@ impl Writer {
 fn front(head: &Head) -> Vec<u8> {
     let text = serde_json::to_vec(head).expect("a head is plain numbers");
     let mut front = MAGIC.to_vec();
-    front.extend(VERSION.to_le_bytes());
+    front.extend(version(head).to_le_bytes());
     front.extend((text.len() as u32).to_le_bytes());
     front.extend(fnv(&text).to_le_bytes());
     front.extend(text);
@@ -164,29 +172,32 @@ fn lock(file: &File, path: &Path) -> Result<(), WriterError> {
     }
 }
 
-/// Checks that what is there is the beginning of what is wanted.
-fn check_same(
-    path: &Path,
-    (found, wanted): (&Head, &Head),
-    (sources, names): (&[&Source], &[&str]),
-) -> Result<(), WriterError> {
-    let other = |found: String, wanted: String| WriterError::Other {
+/// The first bytes of a file, fewer where it has no more.
+fn first_bytes(path: &Path, n: usize) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::with_capacity(n);
+    File::open(path)?.take(n as u64).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+fn other_head(path: &Path, found: &Head, wanted: &Head) -> WriterError {
+    let words = |head: &Head| serde_json::to_string(head).expect("a head is plain numbers");
+    WriterError::Other {
         path: path.to_owned(),
-        found,
-        wanted,
-    };
-    if found != wanted {
-        let words = |head: &Head| serde_json::to_string(head).expect("a head is plain numbers");
-        let [found, wanted] = [found, wanted].map(words);
-        return Err(other(found, wanted));
+        found: words(found),
+        wanted: words(wanted),
     }
+}
+
+/// Checks that the sources that are there are the first of those that are wanted.
+fn check_names(path: &Path, sources: &[&Source], names: &[&str]) -> Result<(), WriterError> {
     let pairs = sources.iter().zip(names).enumerate();
     let mut different = pairs.filter(|(_, (source, name))| source.name != **name);
     match different.next() {
         None => Ok(()),
-        Some((i, (source, name))) => Err(other(
-            format!("{} as source {i}", source.name),
-            (*name).to_owned(),
-        )),
+        Some((i, (source, name))) => Err(WriterError::Other {
+            path: path.to_owned(),
+            found: format!("{} as source {i}", source.name),
+            wanted: (*name).to_owned(),
+        }),
     }
 }

@@ -13,11 +13,13 @@ use burn::optim::{AdamConfig, GradientsParams};
 use burn::tensor::{Device, IndexingUpdateOp, Int, Tensor, TensorData};
 use glam::DVec3;
 use orbflow_geometry::mesh::{Id, PolygonMesh, TriangleMesh};
+use orbflow_geometry::progress::{Cancelled, Progress};
 use serde::{Deserialize, Serialize};
 
 use crate::evaluate::rebuilt::samples;
 use crate::loss::squared;
 use crate::net::numbers;
+use crate::settings::{SettingsError, check_count};
 
 /// How targets are made. The weights are the thesis's; it took 80,000 steps, a quarter of them stiff.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
@@ -50,13 +52,50 @@ impl Default for Settings {
     }
 }
 
+impl Settings {
+    /// Checks that targets can be made so.
+    ///
+    /// # Errors
+    /// [`SettingsError`].
+    pub fn check(&self) -> Result<(), SettingsError> {
+        check_count("chamfer.n_samples", self.n_samples)?;
+        let [stiff, soft] = self.laplacian;
+        let weights = [
+            ("chamfer.edge", self.edge),
+            ("chamfer.normal", self.normal),
+            ("chamfer.laplacian", stiff),
+            ("chamfer.laplacian", soft),
+        ];
+        let is_rate = (0.0..1.0).contains(&self.rate);
+        let rate = (!is_rate).then_some(("chamfer.rate", self.rate, "0 or more and less than 1"));
+        let is_wrong = |(_, weight): &(&str, f64)| !(weight.is_finite() && *weight >= 0.0);
+        let weight = weights.into_iter().find(is_wrong);
+        match rate.or(weight.map(|(name, weight)| (name, weight, "a number of 0 or more"))) {
+            None => Ok(()),
+            Some((name, found, wanted)) => Err(SettingsError::Range {
+                name,
+                found: found.to_string(),
+                wanted,
+            }),
+        }
+    }
+}
+
 #[derive(Module, Debug)]
 struct Offsets {
     offsets: Param<Tensor<2>>,
 }
 
 /// Three numbers for each point of the sphere.
-pub fn offsets(sphere: &PolygonMesh, surface: &[[DVec3; 3]], settings: &Settings) -> Vec<f32> {
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn offsets(
+    sphere: &PolygonMesh,
+    surface: &[[DVec3; 3]],
+    settings: &Settings,
+    progress: &Progress,
+) -> Result<Vec<f32>, Cancelled> {
     let device = Device::flex().autodiff();
     let surface = samples(surface, settings.n_samples);
     let problem = Problem::new(sphere, &surface, &device);
@@ -66,13 +105,14 @@ pub fn offsets(sphere: &PolygonMesh, surface: &[[DVec3; 3]], settings: &Settings
     };
     let mut optimizer = AdamConfig::new().init();
     for step in 0..settings.n_steps {
+        progress.check()?;
         let is_stiff = 4 * step < settings.n_steps;
         let laplacian = settings.laplacian[usize::from(!is_stiff)];
         let loss = problem.loss(moved.offsets.val(), (settings, laplacian));
         let gradients = GradientsParams::from_grads(loss.backward(), &moved);
         moved = optimizer.step(settings.rate, moved, gradients);
     }
-    numbers(moved.offsets.val())
+    Ok(numbers(moved.offsets.val()))
 }
 
 /// What does not change from step to step.
@@ -226,7 +266,7 @@ mod tests {
             n_steps: 200,
             ..Settings::default()
         };
-        let offsets = offsets(&sphere, &ellipsoid(), &settings);
+        let offsets = offsets(&sphere, &ellipsoid(), &settings, &Progress::none()).unwrap();
         let points = sphere.positions().iter().zip(offsets.chunks_exact(3));
         let away = points.map(|(p, o)| {
             let q = *p + DVec3::new(o[0].into(), o[1].into(), o[2].into());
