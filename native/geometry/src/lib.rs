@@ -44,6 +44,7 @@ pub mod deform;
 pub mod elementary;
 pub mod embed;
 pub mod flow;
+pub mod groups;
 pub mod hierarchy;
 pub mod measure;
 pub mod mesh;

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// From the ground up: what everything may ask whether to go on lies under the numbered floors.
 const FLOORS: [&[&str]; 5] = [
     &["elementary", "progress"],
-    &["mesh", "random", "sparse"],
+    &["groups", "mesh", "random", "sparse"],
     &["hierarchy", "measure", "mirror", "nearest", "sphere_map"],
     &[
         "clean", "decimate", "deform", "embed", "flow", "score", "sphere", "transfer",

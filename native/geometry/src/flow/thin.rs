@@ -8,7 +8,8 @@ use glam::DVec3;
 
 use super::quads::{Error, Flow, Report, tolerance};
 use super::strips::{Leaving, doubled_edges, follow_strips};
-use crate::measure::{Groups, Seam};
+use crate::groups::Groups;
+use crate::measure::Seam;
 use crate::mesh::{FaceId, Id, PolygonMesh, VertexId};
 
 /// More quads than this never meet at a vertex.

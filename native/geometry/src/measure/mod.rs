@@ -4,7 +4,6 @@
 //! that they drop out of sums instead of poisoning them.
 
 mod curvature;
-mod groups;
 mod polygon_edges;
 mod polyline;
 mod sharp;
@@ -16,7 +15,6 @@ use crate::elementary::atan2;
 use crate::mesh::{FaceId, FaceMap, HalfedgeId, TriangleMesh, VertexMap};
 
 pub use curvature::{Curvature, CurvatureField, principal_curvatures};
-pub use groups::Groups;
 pub use polygon_edges::PolygonEdges;
 pub use polyline::{Polyline, Seam};
 pub use sharp::sharp_edges;

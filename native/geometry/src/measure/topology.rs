@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use super::{Groups, PolygonEdges};
+use super::PolygonEdges;
+use crate::groups::Groups;
 use crate::mesh::{Id, PolygonMesh};
 use crate::progress::{Cancelled, Progress};
 

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::cut::{Side, positive_side};
 use super::{DoubleError, Doubled, mirrored};
+use crate::groups::Groups;
 use crate::mesh::{FaceId, HalfedgeId, Id, TriangleMesh, VertexId};
 
 /// Cuts a closed mesh of genus 0 at the plane where a coordinate is 0 and closes the largest piece
@@ -39,11 +40,11 @@ fn largest_piece(side: &Side) -> Result<(TriangleMesh, Vec<[VertexId; 2]>), Doub
     let mut areas = vec![0.0; n];
     for (face, &c) in side.faces.iter().zip(&component) {
         let [p, q, r] = face.map(|v| side.positions[v.index()]);
-        areas[c] += (q - p).cross(r - p).length();
+        areas[c as usize] += (q - p).cross(r - p).length();
     }
     let largest = (0..n).max_by(|&a, &b| areas[a].total_cmp(&areas[b]).then(b.cmp(&a)));
     let of_piece = side.faces.iter().zip(&component);
-    let of_piece = of_piece.filter(|(_, c)| Some(**c) == largest);
+    let of_piece = of_piece.filter(|(_, c)| Some(**c as usize) == largest);
     let faces = of_piece.map(|(face, _)| *face);
     let (piece, vertices) = TriangleMesh::of_faces(&side.positions, faces)?;
     let sources = vertices.iter().map(|v| side.sources[v.index()]).collect();
@@ -51,7 +52,7 @@ fn largest_piece(side: &Side) -> Result<(TriangleMesh, Vec<[VertexId; 2]>), Doub
 }
 
 /// The component of each face, joined over edges, and how many there are.
-fn components(side: &Side) -> (Vec<usize>, usize) {
+fn components(side: &Side) -> (Vec<u32>, usize) {
     let mut sides: Vec<([VertexId; 2], usize)> = Vec::with_capacity(3 * side.faces.len());
     for (i, face) in side.faces.iter().enumerate() {
         for k in 0..3 {
@@ -60,31 +61,11 @@ fn components(side: &Side) -> (Vec<usize>, usize) {
         }
     }
     sides.sort_unstable();
-    let mut roots: Vec<usize> = (0..side.faces.len()).collect();
+    let mut groups = Groups::new(side.faces.len());
     for pair in sides.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
-        let [a, b] = [pair[0].1, pair[1].1].map(|face| root(&mut roots, face));
-        roots[a.max(b)] = a.min(b);
+        groups.link(pair[0].1, pair[1].1);
     }
-    let mut names = vec![usize::MAX; roots.len()];
-    let mut n = 0;
-    let mut component = Vec::with_capacity(roots.len());
-    for face in 0..roots.len() {
-        let root = root(&mut roots, face);
-        if names[root] == usize::MAX {
-            names[root] = n;
-            n += 1;
-        }
-        component.push(names[root]);
-    }
-    (component, n)
-}
-
-fn root(roots: &mut [usize], mut face: usize) -> usize {
-    while roots[face] != face {
-        roots[face] = roots[roots[face]];
-        face = roots[face];
-    }
-    face
+    groups.numbered()
 }
 
 /// Splits inner edges between two vertices of the border: their images would join the same two.

@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use super::statistics::harmonic;
 use super::surface::Surface;
-use crate::measure::{Groups, angle_between};
+use crate::groups::Groups;
+use crate::measure::angle_between;
 use crate::mesh::{FaceId, Id};
 use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};

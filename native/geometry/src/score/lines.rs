@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::statistics::{median, share};
 use super::surface::Surface;
-use crate::measure::Groups;
+use crate::groups::Groups;
 use crate::mesh::Id;
 use crate::progress::{Cancelled, Progress};
 

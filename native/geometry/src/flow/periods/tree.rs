@@ -4,7 +4,7 @@ use glam::IVec2;
 
 use super::NotASphere;
 use crate::flow::complex::{Complex, Turn};
-use crate::measure::Groups;
+use crate::groups::Groups;
 use crate::mesh::{FaceId, HalfedgeId, Id};
 
 /// The halfedges of a spanning tree of least length, shortest first.
