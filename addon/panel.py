@@ -206,8 +206,8 @@ def _symmetry(report: dict[str, Any]) -> list[tuple[str, str]]:
 
 
 def _proposal(embedding: dict[str, Any]) -> list[tuple[str, str]]:
-    """What the network proposed and what it took to mend it; nothing with the solver."""
-    if embedding["predictor"] == "solver":
+    """What the network proposed and what it took to mend it; nothing with the solver alone."""
+    if embedding["weights"] is None:
         return []
     proposal = embedding["proposal"]
     relaxed = embedding["n_relaxations"] - proposal["n_relaxations"]

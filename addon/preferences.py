@@ -13,7 +13,7 @@ class OrbflowPreferences(bpy.types.AddonPreferences):
     weights: StringProperty(  # pyright: ignore[reportInvalidTypeForm]
         name="Network Weights",
         description=(
-            "A file of weights for the predictor Network, as `orbflow train` writes it; empty for "
+            "A file of weights for the network, as `orbflow train` writes it; empty for "
             "those that come with the add-on. It holds numbers; nothing in it is executed"
         ),
         subtype="FILE_PATH",

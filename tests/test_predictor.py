@@ -90,13 +90,14 @@ def test_the_wheel_has_weights_of_its_own_and_tells_what_they_proposed() -> None
     assert embedding["n_relaxations"] > 0
     assert embedding["weights"]["shipped"]
     assert min(embedding["times"][f"{stage}_ms"] for stage in ("propose", "relax")) > 0
-    assert orbflow_native.embed(*ball()).report["embedding"]["weights"] is None
+    small = orbflow_native.embed(*ball()).report["embedding"]
+    assert (small["predictor"], small["weights"]) == ("solver", None)
 
 
 def test_weights_that_nothing_reads_and_missing_files_are_said(tmp_path: Path) -> None:
     for function in (orbflow_native.remesh, orbflow_native.embed):
-        with pytest.raises(ValueError, match="for the predictor `network` alone"):
-            function(*ball(), weights=b"")
+        with pytest.raises(ValueError, match="not for the predictor `solver`"):
+            function(*ball(), predictor="solver", weights=b"")
     with pytest.raises(orbflow_native.InputError, match=r"cannot read .*gone"):
         orbflow_native.remesh(*ball(), predictor="network", weights=tmp_path / "gone")
     with pytest.raises(TypeError):

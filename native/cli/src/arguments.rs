@@ -203,7 +203,7 @@ pub struct InAndOut {
 #[derive(Args, Debug)]
 pub struct Run {
     /// What proposes the map to the sphere
-    #[arg(long, value_enum, default_value_t = Predictor::Solver)]
+    #[arg(long, value_enum, default_value_t = Predictor::Auto)]
     pub predictor: Predictor,
     /// The weights of the network, as `orbflow train` writes them [default: the program's own]
     #[arg(long, value_name = "FILE")]
@@ -226,6 +226,8 @@ pub struct Work {
 /// The predictors by name.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
 pub enum Predictor {
+    /// The network where a part has 20,000 vertices on its map or more, else the solver
+    Auto,
     /// Progressive embedding; needs no training
     Solver,
     /// A graph network for the coarse levels; the solver grows the rest
@@ -343,7 +345,7 @@ fn check_primitive(wanted: &Wanted) -> Result<(), clap::Error> {
 fn check_weights(run: &Run) -> Result<(), clap::Error> {
     match (run.predictor, &run.weights) {
         (Predictor::Solver, Some(_)) => {
-            Err(wrong("--weights is for --predictor network alone".into()))
+            Err(wrong("--weights is not for --predictor solver".into()))
         }
         _ => Ok(()),
     }

@@ -4,8 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use orbflow_geometry::embed::{OffsetPredictor, Solver};
-use orbflow_network::NetworkPredictor;
 use orbflow_network::weights::{ReadWeightsError, Weights};
+use orbflow_network::{AutoPredictor, NetworkPredictor};
 
 use crate::arguments::{Predictor, Run};
 use crate::error::Error;
@@ -14,6 +14,13 @@ impl Run {
     /// The predictor itself, with its weights.
     pub fn build(&self) -> Result<Box<dyn OffsetPredictor>, Error> {
         match (self.predictor, &self.weights) {
+            (Predictor::Auto, path) => {
+                let least = AutoPredictor::LEAST_VERTICES;
+                Ok(Box::new(AutoPredictor::new(
+                    network(path.as_deref())?,
+                    least,
+                )))
+            }
             (Predictor::Network, path) => Ok(Box::new(network(path.as_deref())?)),
             // The arguments see to it that a solver has none.
             (Predictor::Solver, _) => Ok(Box::new(Solver::default())),

@@ -213,11 +213,6 @@ fn wrong_usage_ends_with_2_and_writes_nothing() {
         (owned(&["score", "-", "-"]), "read twice"),
         (owned(&["decimate", &input, &obj]), "--faces"),
         (owned(&["embed", &input]), "--report"),
-        (remesh(&["--weights", "w"]), "for --predictor network"),
-        (
-            owned(&["embed", &input, "--report", "-", "--weights", "w"]),
-            "for --predictor network",
-        ),
     ];
     for (arguments, words) in cases {
         let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
@@ -230,6 +225,18 @@ fn wrong_usage_ends_with_2_and_writes_nothing() {
         );
     }
     assert_eq!(folder.names(), ["ball.obj"]);
+}
+
+#[test]
+fn weights_are_refused_for_the_solver() {
+    let folder = Folder::new();
+    let input = folder.write("ball.obj", &ball(""));
+    for verb in [["remesh", &input, "-"], ["embed", &input, "--report=-"]] {
+        let refused = run(&[&verb[..], &["--predictor=solver", "--weights=w"]].concat());
+        assert_eq!(refused.code, 2, "{verb:?}");
+        let words = "--weights is not for --predictor solver";
+        assert!(refused.err.contains(words), "{}", refused.err);
+    }
 }
 
 #[test]

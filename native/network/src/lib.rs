@@ -6,8 +6,9 @@
 //! ```
 //!
 //! [`NetworkPredictor`] plugs the network into [`embed`](orbflow_geometry::embed), which repairs,
-//! grows and relaxes whatever it proposes. Training, on burn, is a crate of its own.
+//! grows and relaxes whatever it proposes; [`AutoPredictor`] asks it where that saves time. Training, on burn, is a crate of its own.
 
+mod auto;
 pub mod features;
 pub mod frame;
 pub mod gated;
@@ -19,4 +20,5 @@ pub mod pyramid;
 pub mod relaxation;
 pub mod weights;
 
+pub use auto::AutoPredictor;
 pub use predictor::NetworkPredictor;

@@ -55,7 +55,7 @@ def remesh(
     adaptivity: float = 0.5,
     sharp_angle: float = 40.0,
     mirror: str = "auto",
-    predictor: str = "solver",
+    predictor: str = "auto",
     weights: bytes | str | os.PathLike[str] | None = None,
     threads: int = 0,
     seed: int = 0,
@@ -87,9 +87,10 @@ def remesh(
     Edges of the result that lie on `carried_edges` (E, 2) are told, so that what is marked on
     these can be carried over. With `cut_edges` (E, 2), along which data on corners is cut as
     texture coordinates are along seams, the result tells where each of its elements comes from.
-    `predictor` is "solver" or "network"; the network has the weights of the wheel, or `weights`:
-    the bytes of a file that `orbflow train` wrote, or its path. `n_crosses` is how many crosses
-    of the field that the quads follow to tell at most.
+    `predictor` is "auto", "network" or "solver": auto takes the network for maps of 20,000
+    vertices or more, some 10,000 quads, else the solver. The network has the weights of the
+    wheel, or `weights`: the bytes of a file that `orbflow train` wrote, or its path. `n_crosses`
+    is how many crosses of the field that the quads follow to tell at most.
     `scale` is the scale of the object: faces are even in the scaled space, the
     result is in the space of the input. `reduced` is the same mesh with fewer triangles, as
     points (V, 3) and triangles (T, 3); without it, fast-simplification makes it for large

@@ -30,7 +30,7 @@ pub struct Embedded {
 /// Raises `InputError` when the mesh cannot be done, `Cancelled` when the token was raised.
 #[pyfunction]
 #[pyo3(signature = (
-    positions, loop_start, corner_vert, *, predictor="solver", weights=None, threads=0, progress=None,
+    positions, loop_start, corner_vert, *, predictor="auto", weights=None, threads=0, progress=None,
     cancel=None,
 ))]
 #[expect(

@@ -4,8 +4,8 @@ use std::fs;
 use std::path::PathBuf;
 
 use orbflow_geometry::embed::{OffsetPredictor, Solver};
-use orbflow_network::NetworkPredictor;
 use orbflow_network::weights::Weights;
+use orbflow_network::{AutoPredictor, NetworkPredictor};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -26,17 +26,23 @@ pub fn predictor(
     match (name, weights) {
         ("solver", None) => Ok(Box::new(Solver::default())),
         ("solver", Some(_)) => Err(PyValueError::new_err(
-            "weights: they are for the predictor `network` alone",
+            "weights: they are not for the predictor `solver`",
         )),
-        ("network", Some(weights)) => Ok(Box::new(network(weights)?)),
-        ("network", None) => Ok(Box::<NetworkPredictor>::default()),
+        ("network", weights) => Ok(Box::new(network(weights)?)),
+        ("auto", weights) => {
+            let least = AutoPredictor::LEAST_VERTICES;
+            Ok(Box::new(AutoPredictor::new(network(weights)?, least)))
+        }
         _ => Err(PyValueError::new_err(format!(
-            "predictor: unknown name `{name}`, expected `solver` or `network`"
+            "predictor: unknown name `{name}`, expected `auto`, `network` or `solver`"
         ))),
     }
 }
 
-fn network(weights: &Bound<'_, PyAny>) -> PyResult<NetworkPredictor> {
+fn network(weights: Option<&Bound<'_, PyAny>>) -> PyResult<NetworkPredictor> {
+    let Some(weights) = weights else {
+        return Ok(NetworkPredictor::default());
+    };
     let (bytes, named) = if let Ok(bytes) = weights.cast::<PyBytes>() {
         (bytes.as_bytes().to_vec(), String::new())
     } else {

@@ -51,9 +51,9 @@ pub struct Remeshed {
 /// Edges of the result that lie on `carried_edges` `(E, 2) int32` are told, so that marks on these can
 /// be carried over. With `cut_edges` `(E, 2) int32`, along which data on corners is cut as texture
 /// coordinates are along seams, the result tells where each of its elements comes from.
-/// `predictor` is "solver" or "network"; the network has the wheel's weights, or `weights`: the bytes
-/// of a file that `orbflow train` wrote, or its path. `n_crosses` is how many crosses of the field to
-/// tell at most.
+/// `predictor` is "auto", "network" or "solver": auto takes the network for maps of 20,000 vertices or
+/// more, else the solver. The network has the wheel's weights, or `weights`: the bytes of a file that
+/// `orbflow train` wrote, or its path. `n_crosses` is how many crosses of the field to tell at most.
 /// `score_samples` is how many points of each surface the score looks at; 0 makes no score.
 /// `progress` is called on the calling thread, at most 20 times a second, with the name of the step
 /// and the share of the work that is done. The same input and settings give the same bytes.
@@ -62,7 +62,7 @@ pub struct Remeshed {
 #[pyfunction]
 #[pyo3(signature = (
     positions, loop_start, corner_vert, *, faces=2000, kind="quads", primitive=None,
-    follow_shape=0.5, adaptivity=0.5, sharp_angle=40.0, mirror="auto", predictor="solver",
+    follow_shape=0.5, adaptivity=0.5, sharp_angle=40.0, mirror="auto", predictor="auto",
     weights=None, threads=0, seed=0, scale=None, score_samples=10_000, n_crosses=0,
     material_index=None, marked_edges=None, carried_edges=None, cut_edges=None, density=None,
     reduced=None,     progress=None, cancel=None,

@@ -60,6 +60,11 @@ pub trait OffsetPredictor: Sync {
         Settings::default()
     }
 
+    /// Who proposes for a mesh in its place; itself where there is none.
+    fn deputy(&self, _hierarchy: &CollapseHierarchy) -> Option<&dyn OffsetPredictor> {
+        None
+    }
+
     /// Proposes a point for every vertex, or for those of a coarse level.
     ///
     /// # Errors
@@ -196,8 +201,8 @@ impl From<PredictError> for Error {
     }
 }
 
-/// Lays a mesh on the sphere: the predictor proposes, the solver repairs and relaxes, and the map
-/// is proven to be a bijection.
+/// Lays a mesh on the sphere: the predictor or its deputy proposes, the solver repairs and relaxes,
+/// and the map is proven to be a bijection.
 ///
 /// # Errors
 /// [`enum@Error`]; for a predictor that returns, only when cancelled or when the coordinates of doubles
@@ -219,6 +224,7 @@ fn embed_in_pool(
     progress: &Progress,
 ) -> Result<Embedded, Error> {
     let mesh = hierarchy.mesh();
+    let predictor = predictor.deputy(hierarchy).unwrap_or(predictor);
     let mut times = Times::default();
     let proposing = progress.part("", 0.0, 0.7);
     let propose = || predictor.propose(hierarchy, &proposing);

@@ -1,5 +1,7 @@
 //! Joins the parts into one mesh.
 
+use std::collections::BTreeSet;
+
 use glam::DVec3;
 
 use super::crosses::Cross;
@@ -61,6 +63,12 @@ pub fn join(results: Vec<PartResult>) -> Joined {
     }
 }
 
+/// Who proposed, each once: parts of other sizes may have other predictors.
+fn predictors(reports: &[embed::Report]) -> String {
+    let names: BTreeSet<&str> = reports.iter().map(|r| r.predictor.as_str()).collect();
+    names.into_iter().collect::<Vec<_>>().join(" and ")
+}
+
 /// The embeddings of all parts as one: counts are summed, energies are means weighted by area.
 pub fn join_embeddings(reports: &[embed::Report], areas: &[f64]) -> embed::Report {
     let total: f64 = areas.iter().sum();
@@ -94,11 +102,8 @@ pub fn join_embeddings(reports: &[embed::Report], areas: &[f64]) -> embed::Repor
         n_relaxations: long(|r| r.n_relaxations),
         n_sweeps: reports.iter().map(|r| r.n_sweeps).max().unwrap_or(0),
         complete: reports.iter().all(|r| r.complete),
-        predictor: reports
-            .first()
-            .map(|r| r.predictor.clone())
-            .unwrap_or_default(),
-        weights: reports.first().and_then(|r| r.weights.clone()),
+        predictor: predictors(reports),
+        weights: reports.iter().find_map(|r| r.weights.clone()),
         proposal: embed::ProposalReport {
             n_vertices: count(|r| r.proposal.n_vertices),
             energy: mean(|r| r.proposal.energy),

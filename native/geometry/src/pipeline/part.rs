@@ -317,6 +317,7 @@ fn embed_hierarchy(
     predictor: &dyn OffsetPredictor,
     progress: &Progress<'_>,
 ) -> Result<Embedded, Error> {
+    let predictor = predictor.deputy(hierarchy).unwrap_or(predictor);
     Ok(embed::embed(
         hierarchy,
         predictor,

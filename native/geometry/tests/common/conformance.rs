@@ -19,6 +19,7 @@ pub fn check(hierarchy: &CollapseHierarchy, predictor: &dyn OffsetPredictor) -> 
     let settings = Settings::default();
     let Embedded { map, report } = embed(hierarchy, predictor, &settings, &Progress::none())
         .expect("every proposal is repaired");
+    let predictor = predictor.deputy(hierarchy).unwrap_or(predictor);
     let faces = hierarchy.mesh().faces();
     assert!(folded_faces(faces, map.sphere()).is_empty());
     assert_eq!(degree(faces, map.sphere()), 1);
