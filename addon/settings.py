@@ -180,6 +180,7 @@ def for_core(source: Settings) -> dict[str, Any]:
     return values | {
         "sharp_angle": math.degrees(source.sharp_angle),
         "mirror": source.mirror.lower(),
+        "predictor": source.predictor.lower(),
         "weights": preferences.weights() if source.predictor != "SOLVER" else None,
         "n_crosses": N_CROSSES,
     }
