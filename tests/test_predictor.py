@@ -90,8 +90,17 @@ def test_the_wheel_has_weights_of_its_own_and_tells_what_they_proposed() -> None
     assert embedding["n_relaxations"] > 0
     assert embedding["weights"]["shipped"]
     assert min(embedding["times"][f"{stage}_ms"] for stage in ("propose", "relax")) > 0
-    small = orbflow_native.embed(*ball()).report["embedding"]
+
+
+def test_by_default_the_network_proposes_where_there_are_many_vertices() -> None:
+    small, large = (
+        orbflow_native.embed(*ball(rows, 200)).report["embedding"] for rows in (100, 101)
+    )
+    assert [small["n_vertices"], large["n_vertices"]] == [19_802, 20_002]
     assert (small["predictor"], small["weights"]) == ("solver", None)
+    assert large["predictor"] == "network"
+    assert large["weights"]["shipped"]
+    assert large["energy"] == pytest.approx(small["energy"], rel=0.03)
 
 
 def test_weights_that_nothing_reads_and_missing_files_are_said(tmp_path: Path) -> None:
