@@ -114,6 +114,7 @@ impl<'a> Vertices<'a> {
         }
     }
 
+    #[inline]
     fn at(&self, v: usize) -> Vertex<'_> {
         let Self { powers, width, .. } = self;
         let row = &self.rows[v * 4 * width..][..4 * width];
@@ -137,6 +138,7 @@ fn split(row: &mut [f32], width: usize) -> [&mut [f32]; 4] {
 /// eˣ to seven digits, by additions and products alone so that the loops vectorise and every
 /// processor finds the same bits. Beyond ±43 it stays what it is there: so the product of two is a
 /// normal number of single precision, and a gate with one of them shut or open to the last digit.
+#[inline]
 fn power_of(x: f32) -> f32 {
     // Half of the mantissa: adding and taking it away again rounds to the nearest whole number.
     const ROUNDER: f32 = 12_582_912.0;

@@ -83,15 +83,15 @@ impl WithSimd for Product<'_> {
             // Of a block that is not full the last row is worked out again.
             let row = |i: usize| &rows[i.min(last) * n_in..][..n_in];
             let [a, b, c, d]: [&[f32]; ROWS] = std::array::from_fn(row);
-            let strips = layer.strips.chunks_exact(n_in * COLUMNS);
-            for (strip, first) in strips.zip((0..n_out).step_by(COLUMNS)) {
+            for first in (0..n_out).step_by(COLUMNS) {
+                let strip = layer.strips[first * n_in..].as_chunks::<COLUMNS>().0;
                 let mut sums = [[0.0; COLUMNS]; ROWS];
-                let weights = strip.as_chunks::<COLUMNS>().0.iter();
-                let columns = weights.zip(a).zip(b).zip(c).zip(d);
-                for ((((weights, a), b), c), d) in columns {
-                    for (sums, x) in sums.iter_mut().zip([a, b, c, d]) {
-                        for (sum, weight) in sums.iter_mut().zip(weights) {
-                            *sum += x * weight;
+                // Counted loops: without link-time optimisation iterators stay calls in here.
+                for k in 0..n_in {
+                    let (x, weights) = ([a[k], b[k], c[k], d[k]], &strip[k]);
+                    for i in 0..ROWS {
+                        for j in 0..COLUMNS {
+                            sums[i][j] += x[i] * weights[j];
                         }
                     }
                 }
