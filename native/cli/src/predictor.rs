@@ -14,13 +14,8 @@ impl Run {
     /// The predictor itself, with its weights.
     pub fn build(&self) -> Result<Box<dyn OffsetPredictor>, Error> {
         match (self.predictor, &self.weights) {
-            (Predictor::Auto, path) => {
-                let least = AutoPredictor::LEAST_VERTICES;
-                Ok(Box::new(AutoPredictor::new(
-                    network(path.as_deref())?,
-                    least,
-                )))
-            }
+            (Predictor::Auto, None) => Ok(Box::<AutoPredictor>::default()),
+            (Predictor::Auto, path) => Ok(Box::new(AutoPredictor::new(network(path.as_deref())?))),
             (Predictor::Network, path) => Ok(Box::new(network(path.as_deref())?)),
             // The arguments see to it that a solver has none.
             (Predictor::Solver, _) => Ok(Box::new(Solver::default())),

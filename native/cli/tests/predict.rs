@@ -1,4 +1,4 @@
-//! Prediction alone: a mesh of the network's proposal, or words.
+//! Prediction alone: a mesh of the network's proposal, or words; and weights that nothing reads.
 
 mod support;
 
@@ -79,4 +79,16 @@ fn predict_says_that_a_proposal_was_no_use_and_writes_the_report_alone() {
     let files = ["remesh", &input, &output, "--predictor", "network"];
     let done = run(&[&files[..], &["--weights", &path, "--faces", "200"]].concat());
     assert_eq!(done.code, 0, "{}", done.err);
+}
+
+#[test]
+fn weights_are_refused_for_the_solver() {
+    let folder = Folder::new();
+    let input = folder.write("ball.obj", &ball(""));
+    for verb in [["remesh", &input, "-"], ["embed", &input, "--report=-"]] {
+        let refused = run(&[&verb[..], &["--predictor=solver", "--weights=w"]].concat());
+        assert_eq!(refused.code, 2, "{verb:?}");
+        let words = "--weights is not for --predictor solver";
+        assert!(refused.err.contains(words), "{}", refused.err);
+    }
 }

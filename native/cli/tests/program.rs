@@ -228,18 +228,6 @@ fn wrong_usage_ends_with_2_and_writes_nothing() {
 }
 
 #[test]
-fn weights_are_refused_for_the_solver() {
-    let folder = Folder::new();
-    let input = folder.write("ball.obj", &ball(""));
-    for verb in [["remesh", &input, "-"], ["embed", &input, "--report=-"]] {
-        let refused = run(&[&verb[..], &["--predictor=solver", "--weights=w"]].concat());
-        assert_eq!(refused.code, 2, "{verb:?}");
-        let words = "--weights is not for --predictor solver";
-        assert!(refused.err.contains(words), "{}", refused.err);
-    }
-}
-
-#[test]
 fn help_and_version_are_answers() {
     let help = run(&["remesh", "--help"]);
     assert_eq!(help.code, 0);

@@ -1,5 +1,7 @@
 //! The default of the program: the network where it saves time, else the solver.
 
+use std::sync::OnceLock;
+
 use orbflow_geometry::embed::{OffsetPredictor, PredictError, Proposal, Solver};
 use orbflow_geometry::hierarchy::CollapseHierarchy;
 use orbflow_geometry::progress::Progress;
@@ -13,21 +15,27 @@ use crate::predictor::NetworkPredictor;
 /// second is saved, too little for a map that hangs on weights.
 #[derive(Clone, Debug)]
 pub struct AutoPredictor {
-    network: NetworkPredictor,
+    /// That of the shipped weights is not made before it is asked.
+    network: OnceLock<NetworkPredictor>,
     solver: Solver,
     least_vertices: usize,
 }
 
 impl AutoPredictor {
-    /// From so many vertices on the network proposes.
-    pub const LEAST_VERTICES: usize = 20_000;
-
-    /// Chooses between the solver and a network, from so many vertices on.
-    pub fn new(network: NetworkPredictor, least_vertices: usize) -> Self {
+    /// Chooses between the solver and a network of one's own.
+    pub fn new(network: NetworkPredictor) -> Self {
         Self {
-            network,
-            solver: Solver::default(),
+            network: network.into(),
+            ..Self::default()
+        }
+    }
+
+    /// The same, but the network proposes from so many vertices on.
+    #[must_use]
+    pub fn from_vertices(self, least_vertices: usize) -> Self {
+        Self {
             least_vertices,
+            ..self
         }
     }
 
@@ -35,7 +43,7 @@ impl AutoPredictor {
         if hierarchy.n_vertices() < self.least_vertices {
             &self.solver
         } else {
-            &self.network
+            self.network.get_or_init(NetworkPredictor::default)
         }
     }
 }
@@ -43,7 +51,11 @@ impl AutoPredictor {
 impl Default for AutoPredictor {
     /// With the weights that every build carries.
     fn default() -> Self {
-        Self::new(NetworkPredictor::default(), Self::LEAST_VERTICES)
+        Self {
+            network: OnceLock::new(),
+            solver: Solver::default(),
+            least_vertices: 20_000,
+        }
     }
 }
 

@@ -6,7 +6,8 @@
 //! ```
 //!
 //! [`NetworkPredictor`] plugs the network into [`embed`](orbflow_geometry::embed), which repairs,
-//! grows and relaxes whatever it proposes; [`AutoPredictor`] asks it where that saves time. Training, on burn, is a crate of its own.
+//! grows and relaxes whatever it proposes; [`AutoPredictor`] asks it where that saves time. Training,
+//! on burn, is a crate of its own.
 
 mod auto;
 pub mod features;

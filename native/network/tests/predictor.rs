@@ -61,10 +61,8 @@ fn the_network_proposes_from_so_many_vertices_on() {
     for (_, hierarchy) in hierarchies() {
         let n = hierarchy.n_vertices();
         for (least, name) in [(n, "network"), (n + 1, "solver")] {
-            let report = check(
-                &hierarchy,
-                &AutoPredictor::new(predictor(&weights()), least),
-            );
+            let auto = AutoPredictor::new(predictor(&weights())).from_vertices(least);
+            let report = check(&hierarchy, &auto);
             assert_eq!(report.predictor, name);
             assert_eq!(report.weights.is_some(), name == "network");
         }

@@ -28,21 +28,17 @@ pub fn predictor(
         ("solver", Some(_)) => Err(PyValueError::new_err(
             "weights: they are not for the predictor `solver`",
         )),
-        ("network", weights) => Ok(Box::new(network(weights)?)),
-        ("auto", weights) => {
-            let least = AutoPredictor::LEAST_VERTICES;
-            Ok(Box::new(AutoPredictor::new(network(weights)?, least)))
-        }
+        ("network", Some(weights)) => Ok(Box::new(network(weights)?)),
+        ("network", None) => Ok(Box::<NetworkPredictor>::default()),
+        ("auto", Some(weights)) => Ok(Box::new(AutoPredictor::new(network(weights)?))),
+        ("auto", None) => Ok(Box::<AutoPredictor>::default()),
         _ => Err(PyValueError::new_err(format!(
             "predictor: unknown name `{name}`, expected `auto`, `network` or `solver`"
         ))),
     }
 }
 
-fn network(weights: Option<&Bound<'_, PyAny>>) -> PyResult<NetworkPredictor> {
-    let Some(weights) = weights else {
-        return Ok(NetworkPredictor::default());
-    };
+fn network(weights: &Bound<'_, PyAny>) -> PyResult<NetworkPredictor> {
     let (bytes, named) = if let Ok(bytes) = weights.cast::<PyBytes>() {
         (bytes.as_bytes().to_vec(), String::new())
     } else {
