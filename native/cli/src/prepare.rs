@@ -39,7 +39,7 @@ pub struct Prepare {
     /// keep it in the set
     #[arg(long, value_enum, value_name = "NAME")]
     pub targets: Option<Targets>,
-    /// How targets are made, in its part [chamfer]; what it leaves out has its default
+    /// How targets are made, in its part `chamfer`; what it leaves out has its default
     #[arg(long, value_name = "T.toml", requires = "targets")]
     pub thesis: Option<PathBuf>,
     /// Write the manifest as JSON: each source, its licence, side and counts, and what was left out
