@@ -118,9 +118,17 @@ def _print_of(mesh: bpy.types.Mesh) -> _Print:
     return n, len(mesh.polygons), tuple(x for place in looked_at for x in place)
 
 
-def redraw(context: bpy.types.Context) -> None:
+def redraw_status_bar(context: bpy.types.Context) -> None:
     """Redraws the status bar, which is in no screen's list of areas: setting its text does it."""
     context.workspace.status_text_set_internal("")
+
+
+def redraw_sidebars(context: bpy.types.Context) -> None:
+    """Draws the panel anew: without an undo step Blender does not, and a grey button stays grey."""
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.tag_redraw()
 
 
 def sentence(reports: list[dict[str, Any]]) -> str:

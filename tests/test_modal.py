@@ -19,9 +19,14 @@ class Window:
         self.handlers: list[object] = []
         self.reports: list[str] = []
         self.redraws: list[str] = []
+        self.were_at_work: list[bool] = []
 
     def context(self) -> SimpleNamespace:
+        view = SimpleNamespace(type="VIEW_3D", tag_redraw=self._draw_sidebar)
+        other = SimpleNamespace(type="OUTLINER")
+        screen = SimpleNamespace(areas=[other, view])
         manager = SimpleNamespace(
+            windows=[SimpleNamespace(screen=screen)],
             event_timer_add=self._add_timer,
             event_timer_remove=self.timers.remove,
             modal_handler_add=self.handlers.append,
@@ -43,6 +48,9 @@ class Window:
     def _add_timer(self, _step: float, **_window: object) -> object:
         self.timers.append(object())
         return self.timers[-1]
+
+    def _draw_sidebar(self) -> None:
+        self.were_at_work.append(bool(addon("operators.remesh")._running))
 
 
 @pytest.fixture
@@ -79,7 +87,9 @@ def until(ended: Callable[[], set[str]]) -> set[str]:
 
 
 def is_tidy(window: Window) -> bool:
-    return window.status is None and not window.timers and not addon("operators.remesh")._running
+    at_work = bool(addon("operators.remesh")._running)
+    shown = window.were_at_work[-1:] == [False]
+    return window.status is None and not window.timers and not at_work and shown
 
 
 def test_a_run_ends_with_one_result_and_leaves_nothing_behind(window: Window) -> None:

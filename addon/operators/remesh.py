@@ -64,7 +64,7 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
         if event.type == "ESC" and event.value == "PRESS":
             job.cancel()
         if event.type == "TIMER":
-            panel.redraw(context)
+            panel.redraw_status_bar(context)
             if job.has_ended():
                 return self._end(context, job)
         return {"PASS_THROUGH"} if _is_navigation(event) else {"RUNNING_MODAL"}
@@ -87,6 +87,7 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
         _running.clear()
         context.window_manager.event_timer_remove(self._timer)
         context.workspace.status_text_set(None)
+        panel.redraw_sidebars(context)
 
     def _finish(self, context: bpy.types.Context, outcomes: list[Outcome]) -> set[str]:
         """Writes the results; the one place where errors become reports."""
