@@ -49,7 +49,12 @@ fn a_solver_in_a_hurry_comes_close_with_half_the_work() {
         // Some 2,400 vertices: most levels are beyond those that it sweeps.
         let hierarchy = hierarchy(common::limbs(seed, 20));
         let [thorough, brisk] = [Solver::default(), Solver::BRISK].map(|solver| {
-            let found = embed(&hierarchy, &solver, &solver.finish(), &Progress::none());
+            let found = embed(
+                &hierarchy,
+                &solver,
+                &solver.finish(&hierarchy),
+                &Progress::none(),
+            );
             found.expect("limbs are closed").report
         });
         assert!(

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use orbflow_geometry::embed::{OffsetPredictor, PredictError, Proposal, Solver};
+use orbflow_geometry::embed::{OffsetPredictor, PredictError, Proposal, Settings, Solver};
 use orbflow_geometry::hierarchy::CollapseHierarchy;
 use orbflow_geometry::progress::Progress;
 
@@ -62,6 +62,10 @@ impl Default for AutoPredictor {
 impl OffsetPredictor for AutoPredictor {
     fn name(&self) -> &'static str {
         "auto"
+    }
+
+    fn finish(&self, hierarchy: &CollapseHierarchy) -> Settings {
+        self.choice(hierarchy).finish(hierarchy)
     }
 
     fn deputy(&self, hierarchy: &CollapseHierarchy) -> Option<&dyn OffsetPredictor> {

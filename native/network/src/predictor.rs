@@ -53,7 +53,7 @@ impl OffsetPredictor for NetworkPredictor {
         Some(&self.weights)
     }
 
-    fn finish(&self) -> Settings {
+    fn finish(&self, _hierarchy: &CollapseHierarchy) -> Settings {
         Settings::BRISK
     }
 

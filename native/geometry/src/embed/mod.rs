@@ -55,8 +55,8 @@ pub trait OffsetPredictor: Sync {
         None
     }
 
-    /// How its maps are finished, unless the caller wants it otherwise.
-    fn finish(&self) -> Settings {
+    /// How its map of a mesh is finished, unless the caller wants it otherwise.
+    fn finish(&self, _hierarchy: &CollapseHierarchy) -> Settings {
         Settings::default()
     }
 

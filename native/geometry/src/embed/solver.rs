@@ -39,7 +39,7 @@ impl OffsetPredictor for Solver {
         "solver"
     }
 
-    fn finish(&self) -> Settings {
+    fn finish(&self, _hierarchy: &CollapseHierarchy) -> Settings {
         if self.finest_swept == usize::MAX {
             Settings::default()
         } else {

@@ -317,11 +317,10 @@ fn embed_hierarchy(
     predictor: &dyn OffsetPredictor,
     progress: &Progress<'_>,
 ) -> Result<Embedded, Error> {
-    let predictor = predictor.deputy(hierarchy).unwrap_or(predictor);
     Ok(embed::embed(
         hierarchy,
         predictor,
-        &predictor.finish(),
+        &predictor.finish(hierarchy),
         &progress.part("", 0.2, 1.0),
     )?)
 }
