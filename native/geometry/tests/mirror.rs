@@ -10,7 +10,7 @@ use orbflow_geometry::embed::Solver;
 use orbflow_geometry::mesh::{PolygonMesh, TriangleMesh, VertexId};
 use orbflow_geometry::nearest::Bvh;
 use orbflow_geometry::pipeline::{
-    Error, Input, Kind, Mirror, Mirrored, Remeshed, Settings, Through, remesh,
+    Error, Input, Kind, Mirror, Mirrored, Primitive, Remeshed, Settings, Through, remesh,
 };
 use orbflow_geometry::progress::{CancelToken, Progress};
 
@@ -220,6 +220,19 @@ fn other_primitives_say_that_they_are_not_symmetric() {
     let made = run(&mesh, &wanted);
     let told = made.report.parts[0].mirrored.clone();
     assert!(matches!(told, Some(Mirrored::Refused { .. })), "{told:?}");
+}
+
+#[test]
+fn other_primitives_keep_both_sides_of_a_mesh_that_is_not_symmetric() {
+    let mesh = common::polygons(&common::limbs(4, 8));
+    for kind in [Kind::Triangles, Kind::Quads] {
+        let [named, off] = [Mirror::X, Mirror::Off].map(|mirror| Settings {
+            kind,
+            primitive: (kind == Kind::Quads).then_some(Primitive::QuadSphere),
+            ..settings(mirror)
+        });
+        assert_eq!(run(&mesh, &named).mesh, run(&mesh, &off).mesh, "{kind:?}");
+    }
 }
 
 #[test]

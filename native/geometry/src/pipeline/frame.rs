@@ -125,12 +125,10 @@ impl Frame {
         vector * self.diagonal
     }
 
-    /// Back from the frame.
+    /// Back from the frame; what would lie beyond the largest numbers lies there.
     pub fn leave(&self, points: &[DVec3]) -> Vec<DVec3> {
-        points
-            .iter()
-            .map(|&p| p * self.diagonal + self.centre)
-            .collect()
+        let back = |&p: &DVec3| (p * self.diagonal + self.centre).clamp(DVec3::MIN, DVec3::MAX);
+        points.iter().map(back).collect()
     }
 }
 
@@ -158,6 +156,13 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn what_lies_outside_the_largest_box_comes_back_finite() {
+        let frame = Frame::new([DVec3::MIN, DVec3::MAX]);
+        let back = frame.leave(&[DVec3::new(1.1, -1.1, 0.0)]);
+        assert_eq!(back, [DVec3::new(f64::MAX, f64::MIN, 0.0)]);
     }
 
     #[test]

@@ -170,7 +170,8 @@ impl Wanted<'_> {
         Ok(Made {
             deformed,
             flow,
-            mirrored: axis.map(|_| told(only_flow())),
+            mirrored: (axis.is_some() || self.settings.mirrors_in_vain())
+                .then(|| told(only_flow())),
             sphere: placed.report,
             crosses: Vec::new(),
         })

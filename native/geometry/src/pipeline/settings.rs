@@ -176,12 +176,17 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// The plane to look for: unasked only for quads that flow.
+    /// The plane to look for: nothing but quads that flow can be each other's images.
     pub(super) fn mirror(&self) -> Mirror {
-        match self.mirror {
-            Mirror::Auto if self.primitive() != Primitive::Flow => Mirror::Off,
-            wanted => wanted,
+        match self.primitive() {
+            Primitive::Flow => self.mirror,
+            _ => Mirror::Off,
         }
+    }
+
+    /// Whether an axis is named for faces that cannot be each other's images.
+    pub(super) fn mirrors_in_vain(&self) -> bool {
+        !matches!(self.mirror, Mirror::Off | Mirror::Auto) && self.mirror() == Mirror::Off
     }
 
     /// The primitive that is asked for, or the one that suits the kind.

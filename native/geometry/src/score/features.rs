@@ -6,7 +6,7 @@ use super::statistics::harmonic;
 use super::surface::Surface;
 use crate::groups::Groups;
 use crate::measure::angle_between;
-use crate::mesh::{FaceId, Id};
+use crate::mesh::{FaceId, Id, bounds};
 use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
 
@@ -24,6 +24,8 @@ const LEAST_SHARE: f64 = 0.75;
 const TOLERANCE: f64 = 0.005;
 /// Between two samples of a line, in diagonals.
 const SPACING: f64 = 0.001;
+/// Lines have some so many samples at most, or those of an output in other units would fill the memory.
+const MOST_SAMPLES: f64 = 1e6;
 
 /// F1 of sharp lines; none where the input has no clear ones.
 pub fn f1_pct(
@@ -57,11 +59,17 @@ fn share_near(
     progress: &Progress,
 ) -> Result<f64, Cancelled> {
     let tree = Bvh::build_of_points(others, progress)?;
+    let [low, high] = bounds(others);
+    // Of points as far away as other units make them the tree, in single precision, rules out nothing.
+    let may_be_near = |p: DVec3| p.clamp(low, high).distance(p) <= tolerance;
     let mut n_near = 0;
     for &p in points {
         progress.check()?;
-        let near = tree.closest_where(p, tolerance * tolerance, |_| true);
-        n_near += usize::from(near.is_some());
+        let is_near = |p| {
+            tree.closest_where(p, tolerance * tolerance, |_| true)
+                .is_some()
+        };
+        n_near += usize::from(may_be_near(p) && is_near(p));
     }
     Ok(n_near as f64 / points.len() as f64)
 }
@@ -109,6 +117,7 @@ impl SharpLines {
     }
 
     fn samples(&self, spacing: f64) -> Vec<DVec3> {
+        let spacing = spacing.max(self.length / MOST_SAMPLES);
         let along = |&[a, b]: &[DVec3; 2]| {
             let n = (a.distance(b) / spacing).ceil() as usize;
             (0..n).map(move |i| a.lerp(b, (i as f64 + 0.5) / n as f64))

@@ -166,6 +166,16 @@ fn the_edges_of_a_box_are_found_where_they_are() {
 }
 
 #[test]
+fn an_output_in_far_smaller_units_is_scored_too() {
+    let cube = quad_cube(4, |p| p);
+    for size in [1e4, 1e30] {
+        let score = scored(&cube, &moved(&cube, |p| p * size));
+        assert_eq!(score.distance.f1_at_1_pct, 0.0, "{size}");
+        assert_eq!(score.feature_f1_pct, Some(0.0), "{size}");
+    }
+}
+
+#[test]
 fn a_symmetric_sphere_has_no_asymmetry_and_a_turned_one_about_a_third() {
     let sphere = quad_sphere(20);
     assert!(scored(&sphere, &sphere).asymmetry.is_some_and(|a| a < 1e-6));
