@@ -5,6 +5,9 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+#: What Blender calls the attribute of seams: now, and in 4.2.
+SEAMS = ("uv_seam", ".uv_seam")
+
 
 def positions(mesh: bpy.types.Mesh) -> NDArray[np.float32]:
     """The position of every vertex, (V, 3)."""

@@ -32,9 +32,9 @@ class MeshArrays:
 
 # The attributes of edges that hold the marks, and their types.
 _MARKS = {
-    "SHARP": ("sharp_edge", "BOOLEAN"),
-    "CREASE": ("crease_edge", "FLOAT"),
-    "SEAM": ("uv_seam", "BOOLEAN"),
+    "SHARP": [("sharp_edge", "BOOLEAN")],
+    "CREASE": [("crease_edge", "FLOAT")],
+    "SEAM": [(name, "BOOLEAN") for name in attributes.SEAMS],
 }
 
 
@@ -60,7 +60,7 @@ def _materials(mesh: bpy.types.Mesh) -> Int | None:
 
 def _marked(mesh: bpy.types.Mesh, marks: Iterable[str]) -> Int | None:
     found = np.zeros(len(mesh.edges), bool)
-    for name, kind in (_MARKS[mark] for mark in marks):
+    for name, kind in (each for mark in marks for each in _MARKS[mark]):
         attribute = mesh.attributes.get(name)
         if attribute is None or (attribute.domain, attribute.data_type) != ("EDGE", kind):
             continue

@@ -150,10 +150,12 @@ def test_edges_marked_by_the_artist_are_edges_of_the_result(open_fixture: Open, 
     bpy.ops.mesh.primitive_uv_sphere_add(segments=40, ring_count=20)
     thing = bpy.context.object
     flat = {v.index for v in thing.data.vertices if abs(v.co[2]) < 1e-6}
-    name, kind = addon("mesh_arrays")._MARKS[mark]
-    attribute = thing.data.attributes.get(name) or thing.data.attributes.new(name, kind, "EDGE")
-    marked = [set(edge.vertices) <= flat for edge in thing.data.edges]
-    attribute.data.foreach_set("value", np.array(marked, float if kind == "FLOAT" else bool))
+    marked = [edge for edge in thing.data.edges if set(edge.vertices) <= flat]
+    creases = thing.data.attributes.new("crease_edge", "FLOAT", "EDGE")
+    for edge in marked:
+        edge.use_edge_sharp = mark == "SHARP"
+        edge.use_seam = mark == "SEAM"
+        creases.data[edge.index].value = float(mark == "CREASE")
     plain = thing.copy()
     plain.data = thing.data.copy()
     press.orbflow_remesh(faces=400, marked_edges={mark})
