@@ -35,9 +35,9 @@ class Done:
 
 @dataclass(frozen=True)
 class Failed:
-    """A task that cannot be done, and the text of why not."""
+    """An object that cannot be done, and the text of why not."""
 
-    task: Task
+    name: str
     error: str
 
 
@@ -65,7 +65,7 @@ def remesh(
         try:
             result = _remesh_one(task, settings, listen, cancel)
         except (orbflow_native.InputError, RuntimeError) as error:
-            outcomes.append(Failed(task, str(error)))
+            outcomes.append(Failed(task.name, str(error)))
         else:
             outcomes.append(Done(task, result))
     return outcomes

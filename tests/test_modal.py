@@ -142,13 +142,40 @@ def test_blender_may_take_the_operator_away(window: Window) -> None:
     assert is_tidy(window)
 
 
-def test_an_object_that_went_away_meanwhile_is_let_go(window: Window) -> None:
+def remove(spot: Any) -> None:  # noqa: ANN401
+    bpy.data.objects.remove(spot)
+
+
+def move_a_vertex(spot: Any) -> None:  # noqa: ANN401
+    spot.data.vertices[5].co.x += 0.1
+
+
+def edit(spot: Any) -> None:  # noqa: ANN401
+    bpy.context.view_layer.objects.active = spot
+    bpy.ops.object.mode_set(mode="EDIT")
+
+
+def edit_a_copy(spot: Any) -> None:  # noqa: ANN401
+    copy = spot.copy()
+    bpy.context.scene.collection.objects.link(copy)
+    edit(copy)
+
+
+@pytest.mark.parametrize("change", [remove, move_a_vertex, edit, edit_a_copy])
+def test_an_object_that_was_changed_meanwhile_is_let_go(
+    window: Window, change: Callable[[Any], None]
+) -> None:
     context = window.context()
     self = operator(window, faces=500)
     self.invoke(context, None)
-    bpy.data.objects.remove(bpy.data.objects["Spot"])
-    assert until(lambda: send(self, context, "TIMER")) == {"FINISHED"}
+    change(bpy.data.objects["Spot"])
+    assert until(lambda: send(self, context, "TIMER")) == {"CANCELLED"}
+    assert window.reports == ["it was changed meanwhile and is left as it is now"]
     assert is_tidy(window)
+    if bpy.context.object and bpy.context.object.mode == "EDIT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+    meshes = [thing.data for thing in bpy.data.objects if thing.type == "MESH"]
+    assert all(len(mesh.polygons) > 2000 for mesh in meshes)
 
 
 def test_the_status_bar_shows_the_step_and_how_to_stop(window: Window) -> None:

@@ -232,6 +232,24 @@ def test_the_wrong_mode_greys_the_button_out_and_says_why(open_fixture: Open) ->
     assert len(first.data.polygons) == 1280
 
 
+def test_an_object_in_another_mode_does_not_stop_the_others(
+    open_fixture: Open, capfd: pytest.CaptureFixture[str]
+) -> None:
+    open_fixture("02")
+    left, right = bpy.data.objects["Left"], bpy.data.objects["Right"]
+    select(right)
+    bpy.context.view_layer.objects.active = right
+    bpy.ops.object.mode_set(mode="EDIT")
+    # As with Lock Object Modes off: the active object is in object mode, another one is not.
+    bpy.context.view_layer.objects.active = left
+    left.select_set(True)
+    assert press.orbflow_remesh(faces=200) == {"FINISHED"}
+    assert "Right: it is not in object mode" in capfd.readouterr().out
+    bpy.context.view_layer.objects.active = right
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert len(left.data.polygons) <= 204 < len(right.data.polygons)
+
+
 def test_no_selected_mesh_greys_the_button_out_and_says_why(open_fixture: Open) -> None:
     open_fixture("04")
     select(bpy.data.objects["Parent"])

@@ -5,10 +5,12 @@ from dataclasses import replace
 from typing import Any
 
 import bpy
+import numpy as np
 import orbflow_native
 
 from .. import artist, density, mesh_arrays, panel, settings
 from ..job import Done, Failed, Job, Outcome, Task, Todo, remesh
+from ..mesh_arrays import MeshArrays
 
 _TICK_S = 0.05
 
@@ -46,7 +48,7 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
             )
         finally:
             window_manager.progress_end()
-        return self._finish(context, outcomes)
+        return self._finish(outcomes)
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Starts the thread and stays modal until it has ended."""
@@ -81,7 +83,7 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
         if job.is_cancelled:
             self.report({"INFO"}, "cancelled; nothing was changed")
             return {"CANCELLED"}
-        return self._finish(context, job.outcomes)
+        return self._finish(job.outcomes)
 
     def _tidy(self, context: bpy.types.Context) -> None:
         _running.clear()
@@ -89,15 +91,15 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
         context.workspace.status_text_set(None)
         panel.redraw_sidebars(context)
 
-    def _finish(self, context: bpy.types.Context, outcomes: list[Outcome]) -> set[str]:
+    def _finish(self, outcomes: list[Outcome]) -> set[str]:
         """Writes the results; the one place where errors become reports."""
-        done = [each for each in outcomes if isinstance(each, Done)]
-        failed = [each for each in outcomes if isinstance(each, Failed)]
+        told = [_replace(each) if isinstance(each, Done) else each for each in outcomes]
+        reports = [each for each in told if not isinstance(each, Failed)]
+        failed = [each for each in told if isinstance(each, Failed)]
         texts = [each.error for each in failed]
         if len(outcomes) > 1:
-            texts = [f"{each.task.name}: {each.error}" for each in failed]
-        reports = [_replace(context, each) for each in done]
-        if not done:
+            texts = [f"{each.name}: {each.error}" for each in failed]
+        if not reports:
             self.report({"ERROR"}, "; ".join(texts))
             return {"CANCELLED"}
         if texts:
@@ -134,22 +136,24 @@ def _tasks(context: bpy.types.Context, wanted: settings.Settings) -> list[Todo]:
 
 
 def _task(thing: bpy.types.Object, wanted: settings.Settings) -> Todo:
+    if _is_being_edited(thing):
+        return Failed(thing.name, "it is not in object mode, in which Orbflow works")
     arrays = mesh_arrays.read(thing.data, wanted.marked_edges)
     scale = tuple(thing.matrix_world.to_scale())
     task = Task(thing.name, arrays, scale, artist.read(thing))
     try:
         return replace(task, density=density.read(thing, wanted.density))
     except density.NoSuchName as error:
-        return Failed(task, str(error))
+        return Failed(thing.name, str(error))
 
 
-def _replace(context: bpy.types.Context, outcome: Done) -> dict[str, Any]:
+def _replace(outcome: Done) -> dict[str, Any] | Failed:
     """Gives an object its new mesh; returns what is told of it."""
     given = outcome.task.artist
     report = outcome.result.report | {"lost": given.lost if given else []}
-    thing = context.scene.objects.get(outcome.task.name)
-    if thing is None:
-        return report
+    thing = bpy.data.objects.get(outcome.task.name)
+    if thing is None or not _is_unchanged(thing, outcome.task.arrays):
+        return Failed(outcome.task.name, "it was changed meanwhile and is left as it is now")
     old, name = thing.data, thing.data.name
     thing.data = mesh_arrays.write(outcome.result, like=old)
     if given:
@@ -159,6 +163,22 @@ def _replace(context: bpy.types.Context, outcome: Done) -> dict[str, Any]:
         thing.data.name = name
     panel.remember(thing, report, outcome.result.crosses)
     return report
+
+
+def _is_being_edited(thing: bpy.types.Object) -> bool:
+    """Whether a mode holds a mesh of its own, which it would write over another."""
+    return thing.mode != "OBJECT" or thing.data.is_editmode
+
+
+def _is_unchanged(thing: bpy.types.Object, arrays: MeshArrays) -> bool:
+    """Whether another window has left an object as it was read."""
+    if thing.type != "MESH" or _is_being_edited(thing):
+        return False
+    now = mesh_arrays.read(thing.data)
+    return all(
+        np.array_equal(getattr(now, name), getattr(arrays, name))
+        for name in ("positions", "loop_start", "corner_vert")
+    )
 
 
 def _is_navigation(event: bpy.types.Event) -> bool:
