@@ -1,8 +1,10 @@
 """The operator in the real Blender, on every fixture."""
 
 import importlib
+import shutil
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import bpy
@@ -267,6 +269,26 @@ def test_linked_objects_grey_the_button_out_and_say_why(open_fixture: Open) -> N
     select(linked)
     with pytest.raises(RuntimeError, match="linked from another file"):
         press.orbflow_remesh()
+
+
+def test_a_linked_object_does_not_stop_nor_stand_for_one_of_its_name(
+    open_fixture: Open, capfd: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    first = open_fixture("03")
+    path = shutil.copy(FIXTURES / "03_shared_data.blend", tmp_path)
+    with bpy.data.libraries.load(str(path), link=True) as (_, wanted):
+        wanted.objects = ["First"]
+    (linked,) = wanted.objects
+    # The scene finds the one that it was given first.
+    scene = bpy.context.scene.collection
+    for collection in first.users_collection:
+        collection.objects.unlink(first)
+    scene.objects.link(linked)
+    scene.objects.link(first)
+    select(first, linked)
+    assert press.orbflow_remesh(faces=200) == {"FINISHED"}
+    assert "First: it is linked from another file" in capfd.readouterr().out
+    assert len(first.data.polygons) <= 204 < len(linked.data.polygons)
 
 
 def test_counts_out_of_range_are_clamped_by_blender(open_fixture: Open) -> None:

@@ -128,14 +128,12 @@ def _is_editable(thing: bpy.types.Object) -> bool:
 
 def _tasks(context: bpy.types.Context, wanted: settings.Settings) -> list[Todo]:
     context.view_layer.update()
-    return [
-        _task(each, wanted)
-        for each in context.selected_objects
-        if each.type == "MESH" and _is_editable(each)
-    ]
+    return [_task(each, wanted) for each in context.selected_objects if each.type == "MESH"]
 
 
 def _task(thing: bpy.types.Object, wanted: settings.Settings) -> Todo:
+    if not _is_editable(thing):
+        return Failed(thing.name, "it is linked from another file and cannot be changed")
     if _is_being_edited(thing):
         return Failed(thing.name, "it is not in object mode, in which Orbflow works")
     arrays = mesh_arrays.read(thing.data, wanted.marked_edges)
@@ -151,7 +149,8 @@ def _replace(outcome: Done) -> dict[str, Any] | Failed:
     """Gives an object its new mesh; returns what is told of it."""
     given = outcome.task.artist
     report = outcome.result.report | {"lost": given.lost if given else []}
-    thing = bpy.data.objects.get(outcome.task.name)
+    # A linked object may have the same name.
+    thing = bpy.data.objects.get((outcome.task.name, None))
     if thing is None or not _is_unchanged(thing, outcome.task.arrays):
         return Failed(outcome.task.name, "it was changed meanwhile and is left as it is now")
     old, name = thing.data, thing.data.name
