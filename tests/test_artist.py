@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import bmesh
 import bpy
 import numpy as np
 import orbflow_native
@@ -195,6 +196,21 @@ def test_vertex_groups_keep_names_order_and_weights(open_fixture: Open) -> None:
         if abs(vertex.co.x) > 0.2:
             assert weights.get("Arm", 0) == pytest.approx(float(vertex.co.x > 0), abs=1e-3)
         assert "Empty" not in weights
+
+
+def test_weights_of_groups_that_do_not_exist_are_nothing(open_fixture: Open) -> None:
+    thing = open_fixture("03")
+    thing.data = thing.data.copy()
+    thing.vertex_groups.new(name="Arm").add([3], 0.5, "REPLACE")
+    built = bmesh.new()
+    built.from_mesh(thing.data)
+    built.verts.ensure_lookup_table()
+    built.verts[3][built.verts.layers.deform.verify()][7] = 1.0
+    built.to_mesh(thing.data)
+    built.free()
+    (arm,) = addon("artist.groups").read(thing)
+    assert (arm.weights[3], arm.weights.sum()) == (0.5, 0.5)
+    assert press.orbflow_remesh(faces=200, density="Arm") == {"FINISHED"}
 
 
 def test_shape_keys_keep_their_moves_settings_and_drivers(open_fixture: Open) -> None:
