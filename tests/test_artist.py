@@ -223,6 +223,13 @@ def test_shape_keys_keep_their_moves_settings_and_drivers(open_fixture: Open) ->
     smile.value, smile.slider_max, wink.mute = 0.25, 2.0, True
     wink.relative_key = smile
     smile.driver_add("slider_min").driver.expression = "-0.5"
+    follow = wink.driver_add("value").driver
+    follow.expression = "other"
+    other = follow.variables.new()
+    other.name = "other"
+    other.targets[0].id_type = "KEY"
+    other.targets[0].id = thing.data.shape_keys
+    other.targets[0].data_path = 'key_blocks["Smile"].value'
     thing.active_shape_key_index = 1
     press.orbflow_remesh(faces=600)
     keys = thing.data.shape_keys
@@ -234,10 +241,14 @@ def test_shape_keys_keep_their_moves_settings_and_drivers(open_fixture: Open) ->
     for vertex, moved in zip(thing.data.vertices, smile.data, strict=True):
         wanted = tuple(vertex.co + vertex.co * vertex.co.z)
         assert tuple(moved.co) == pytest.approx(wanted, abs=0.02)
-    (driver,) = keys.animation_data.drivers
+    driver, follow = keys.animation_data.drivers
     assert driver.driver.expression == "-0.5"
     assert driver.data_path == 'key_blocks["Smile"].slider_min'
     assert len(bpy.data.shape_keys) == 1
+    assert follow.driver.variables[0].targets[0].id == keys
+    smile.value = 0.75
+    bpy.context.view_layer.update()
+    assert wink.value == pytest.approx(0.75)
 
 
 def test_what_cannot_be_carried_is_named(

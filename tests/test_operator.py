@@ -278,7 +278,7 @@ def test_a_linked_object_does_not_stop_nor_stand_for_one_of_its_name(
     path = shutil.copy(FIXTURES / "03_shared_data.blend", tmp_path)
     with bpy.data.libraries.load(str(path), link=True) as (_, wanted):
         wanted.objects = ["First"]
-    (linked,) = wanted.objects
+    linked = bpy.data.objects["First", str(path)]
     # The scene finds the one that it was given first.
     scene = bpy.context.scene.collection
     for collection in first.users_collection:
