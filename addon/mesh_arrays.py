@@ -73,7 +73,7 @@ def _marked(mesh: bpy.types.Mesh, marks: Iterable[str]) -> Int | None:
 
 
 def write(arrays: MeshArrays | orbflow_native.Remeshed, like: bpy.types.Mesh) -> bpy.types.Mesh:
-    """Makes a new mesh of arrays, with the materials, shading and custom properties of `like`."""
+    """Makes a new mesh of arrays, with the materials and custom properties of `like`."""
     mesh = bpy.data.meshes.new(like.name)
     mesh.vertices.add(len(arrays.positions))
     mesh.loops.add(len(arrays.corner_vert))
@@ -84,22 +84,9 @@ def write(arrays: MeshArrays | orbflow_native.Remeshed, like: bpy.types.Mesh) ->
     if arrays.material_index is not None:
         attribute = mesh.attributes.new("material_index", "INT", "FACE")
         attribute.data.foreach_set("value", arrays.material_index)
-    if is_flat_shaded(like):
-        attribute = mesh.attributes.new("sharp_face", "BOOLEAN", "FACE")
-        attribute.data.foreach_set("value", np.ones(len(arrays.loop_start), bool))
     mesh.update(calc_edges=True)
     for material in like.materials:
         mesh.materials.append(material)
     for key, value in like.items():
         mesh[key] = value
     return mesh
-
-
-def is_flat_shaded(mesh: bpy.types.Mesh) -> bool:
-    """Whether most faces of a mesh are shaded flat."""
-    attribute = mesh.attributes.get("sharp_face")
-    if attribute is None or attribute.domain != "FACE":
-        return False
-    flags = np.empty(len(mesh.polygons), bool)
-    attribute.data.foreach_get("value", flags)
-    return bool(2 * np.count_nonzero(flags) > len(flags))

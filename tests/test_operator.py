@@ -132,9 +132,18 @@ def test_shading_is_kept_flat_or_smooth(open_fixture: Open) -> None:
     artist = open_fixture("09")
     press.orbflow_remesh(faces=200)
     assert not any(face.use_smooth for face in artist.data.polygons)
+    assert artist.data.normals_domain == "FACE"
     artist.data.shade_smooth()
     press.orbflow_remesh(faces=200)
     assert all(face.use_smooth for face in artist.data.polygons)
+    assert artist.data.normals_domain == "POINT"
+    for face in artist.data.polygons:
+        face.use_smooth = face.center.x > 0
+    press.orbflow_remesh(faces=200)
+    assert artist.data.normals_domain == "CORNER"
+    right = [face for face in artist.data.polygons if face.use_smooth]
+    assert 50 < len(right) < 150
+    assert min(face.center.x for face in right) > -0.2
 
 
 def test_faces_are_even_as_the_object_is_seen(open_fixture: Open) -> None:

@@ -23,7 +23,7 @@ _FIELDS: dict[str, tuple[str, type, int]] = {
     "INT8": ("value", np.int8, 1),
 }
 # Attributes that are the mesh itself, or that are carried by other means.
-_OWN = {"position", "material_index", "sharp_face", "custom_normal"}
+_OWN = {"position", "material_index", "custom_normal"}
 
 
 @dataclass(frozen=True)
