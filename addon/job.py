@@ -64,8 +64,10 @@ def remesh(
 
         try:
             result = _remesh_one(task, settings, listen, cancel)
-        except (orbflow_native.InputError, RuntimeError) as error:
-            outcomes.append(Failed(task.name, str(error)))
+        except orbflow_native.Cancelled:
+            raise
+        except Exception as error:
+            outcomes.append(Failed(task.name, str(error) or type(error).__name__))
         else:
             outcomes.append(Done(task, result))
     return outcomes

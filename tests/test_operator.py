@@ -99,6 +99,26 @@ def test_one_bad_object_does_not_stop_the_others(open_fixture: Open) -> None:
     assert len(bad.data.vertices) == 0
 
 
+def test_no_error_stops_the_others(
+    open_fixture: Open, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    open_fixture("02")
+    remesh_one = addon("job")._remesh_one
+
+    def fail(task: Any, *others: Any) -> Any:  # noqa: ANN401
+        if task.name == "Left":
+            raise MemoryError
+        return remesh_one(task, *others)
+
+    monkeypatch.setattr(addon("job"), "_remesh_one", fail)
+    left, right = bpy.data.objects["Left"], bpy.data.objects["Right"]
+    n_faces = len(left.data.polygons)
+    select(left, right)
+    assert press.orbflow_remesh(faces=200) == {"FINISHED"}
+    assert "Left: MemoryError" in capfd.readouterr().out
+    assert (len(left.data.polygons), len(right.data.polygons) <= 204) == (n_faces, True)
+
+
 def test_shared_data_becomes_single_user(open_fixture: Open) -> None:
     first = open_fixture("03")
     second = bpy.data.objects["Second"]
