@@ -264,6 +264,39 @@ def test_what_cannot_be_carried_is_named(
     assert told in addon("panel").exceptions([addon("panel").last_report(thing.name)])
 
 
+def test_what_belongs_to_no_face_and_what_is_bound_to_vertices_is_named(
+    open_fixture: Open,
+) -> None:
+    open_fixture("03")
+    bpy.ops.mesh.primitive_cube_add(size=4)
+    cage = bpy.context.object
+    thing = dressed()
+    built = bmesh.new()
+    built.from_mesh(thing.data)
+    places = [built.verts.new((0, 0, 3 + i)) for i in range(4)]
+    built.edges.new(places[:2])
+    built.edges.new(places[1:3])
+    built.to_mesh(thing.data)
+    built.free()
+    for name in ("Held", "Free"):
+        thing.modifiers.new(name, "HOOK").object = cage
+    thing.modifiers["Held"].vertex_indices_set([0, 1])
+    thing.modifiers.new("Soft", "CORRECTIVE_SMOOTH")
+    thing.modifiers.new("Follow", "SURFACE_DEFORM").target = cage
+    bpy.ops.object.surfacedeform_bind(modifier="Follow")
+    press.orbflow_remesh(faces=200)
+    lost = "2 loose edges, binding of modifier Follow, binding of modifier Held"
+    told = [f"not carried over: {lost}", "left out: 4 loose vertices"]
+    panel = addon("panel")
+    report = panel.last_report(thing.name)
+    assert panel.exceptions([report]) == told
+    report["clean"] |= {"n_isolated": 0, "n_degenerate": 1, "n_duplicates": 2, "n_doubled": 1200}
+    assert panel.exceptions([report])[1] == (
+        "left out: 1 face of fewer than 3 corners, 2 faces that are there twice, "
+        "1,200 triangles back to back with others"
+    )
+
+
 def test_origins_name_corners_of_the_input_and_mix_to_the_place() -> None:
     mesh = ball()
     plain, told = (

@@ -34,7 +34,7 @@ def read(thing: bpy.types.Object) -> Artist:
     """Reads what is on an object that is not in edit mode."""
     mesh = thing.data
     return Artist(
-        edges.read(mesh), elements.read(mesh), groups.read(thing), keys.read(mesh), _lost(mesh)
+        edges.read(mesh), elements.read(mesh), groups.read(thing), keys.read(mesh), _lost(thing)
     )
 
 
@@ -54,6 +54,17 @@ def write(
     keys.write(thing, artist.keys, mix, old)
 
 
-def _lost(mesh: bpy.types.Mesh) -> list[str]:
+def _lost(thing: bpy.types.Object) -> list[str]:
+    mesh = thing.data
     lost = ["custom normals"] if mesh.has_custom_normals else []
+    if n_loose := edges.n_loose(mesh):
+        lost.append(f"{n_loose:,} loose edge{'s' * (n_loose > 1)}")
+    lost += [f"binding of modifier {each.name}" for each in thing.modifiers if _is_bound(each)]
     return lost + [f"attribute {each.name}" for each in mesh.attributes if layers.is_lost(each)]
+
+
+def _is_bound(modifier: bpy.types.Modifier) -> bool:
+    """Whether a modifier knows the vertices of a mesh by their numbers."""
+    if modifier.type == "HOOK":
+        return len(modifier.vertex_indices) > 0
+    return any(getattr(modifier, name, False) for name in ("is_bound", "is_bind"))
