@@ -114,6 +114,14 @@ def test_an_object_in_another_mode_does_not_stop_the_others(
     assert len(left.data.polygons) <= 204 < len(right.data.polygons)
 
 
+def test_a_sculpt_on_many_levels_is_not_thrown_away(open_fixture: Open) -> None:
+    first = open_fixture("03")
+    first.modifiers.new("Detail", "MULTIRES")
+    assert press.orbflow_remesh(faces=200) == {"FINISHED"}
+    bpy.ops.object.multires_subdivide(modifier="Detail")
+    assert "apply or remove modifier Detail first: it holds a sculpt" in refused(first)
+
+
 def test_no_selected_mesh_greys_the_button_out_and_says_why(open_fixture: Open) -> None:
     open_fixture("04")
     select(bpy.data.objects["Parent"])

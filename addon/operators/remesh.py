@@ -136,6 +136,8 @@ def _task(thing: bpy.types.Object, wanted: settings.Settings) -> Todo:
         return Failed(thing.name, "it is linked from another file and cannot be changed")
     if _is_being_edited(thing):
         return Failed(thing.name, "it is not in object mode, in which Orbflow works")
+    if sculpted := _sculpted(thing):
+        return Failed(thing.name, f"apply or remove modifier {sculpted} first: it holds a sculpt")
     arrays = mesh_arrays.read(thing.data, wanted.marked_edges)
     scale = tuple(thing.matrix_world.to_scale())
     task = Task(thing.name, arrays, scale, artist.read(thing))
@@ -167,6 +169,12 @@ def _replace(outcome: Done) -> dict[str, Any] | Failed:
 def _is_being_edited(thing: bpy.types.Object) -> bool:
     """Whether a mode holds a mesh of its own, which it would write over another."""
     return thing.mode != "OBJECT" or thing.data.is_editmode
+
+
+def _sculpted(thing: bpy.types.Object) -> str:
+    """The name of a modifier whose sculpt belongs to the faces of the mesh; empty for none."""
+    multires = (each for each in thing.modifiers if each.type == "MULTIRES")
+    return next((each.name for each in multires if each.total_levels), "")
 
 
 def _is_unchanged(thing: bpy.types.Object, arrays: MeshArrays) -> bool:
