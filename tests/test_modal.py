@@ -73,14 +73,17 @@ def operator(window: Window, faces: int) -> SimpleNamespace:
     return self
 
 
-def send(self: SimpleNamespace, context: SimpleNamespace, kind: str) -> set[str]:
-    return self.modal(context, SimpleNamespace(type=kind, value="PRESS"))
+def send(
+    self: SimpleNamespace, context: SimpleNamespace, kind: str, held: str | None = None
+) -> set[str]:
+    keys = {key: key == held for key in ("ctrl", "alt")}
+    return self.modal(context, SimpleNamespace(type=kind, value="PRESS", **keys))
 
 
 def until(ended: Callable[[], set[str]]) -> set[str]:
     for _ in range(2000):
         answer = ended()
-        if "RUNNING_MODAL" not in answer:
+        if not answer & {"RUNNING_MODAL", "PASS_THROUGH"}:
             return answer
         time.sleep(0.01)
     raise TimeoutError
@@ -106,6 +109,27 @@ def test_a_run_ends_with_one_result_and_leaves_nothing_behind(window: Window) ->
     assert len(bpy.data.objects["Spot"].data.polygons) < 520
     assert is_tidy(window)
     assert addon("panel").rows(addon("panel").last_report("Spot"))
+
+
+def test_looking_around_passes_and_edits_do_not(window: Window) -> None:
+    context = window.context()
+    self = operator(window, faces=200_000)
+    self.invoke(context, None)
+    for kind, held, passes in [
+        ("WHEELUPMOUSE", "ctrl", True),
+        ("TIMER", None, True),
+        ("TIMER_AUTOSAVE", None, True),
+        ("NUMPAD_1", None, True),
+        ("NUMPAD_0", "ctrl", False),
+        ("NUMPAD_SLASH", "alt", False),
+        ("LEFTMOUSE", "alt", True),
+        ("LEFTMOUSE", None, False),
+        ("RIGHTMOUSE", None, False),
+        ("X", None, False),
+    ]:
+        wanted = {"PASS_THROUGH" if passes else "RUNNING_MODAL"}
+        assert send(self, context, kind, held) == wanted, kind
+    self.cancel(context)
 
 
 def test_escape_stops_it_and_changes_nothing(window: Window) -> None:

@@ -69,7 +69,7 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
             panel.redraw_status_bar(context)
             if job.has_ended():
                 return self._end(context, job)
-        return {"PASS_THROUGH"} if _is_navigation(event) else {"RUNNING_MODAL"}
+        return {"PASS_THROUGH"} if _is_harmless(event) else {"RUNNING_MODAL"}
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Blender takes the operator away, for example when another file is opened."""
@@ -188,10 +188,14 @@ def _is_unchanged(thing: bpy.types.Object, arrays: MeshArrays) -> bool:
     )
 
 
-def _is_navigation(event: bpy.types.Event) -> bool:
-    return event.type in {"MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "MOUSEMOVE"} or (
-        event.type.startswith(("NDOF", "NUMPAD", "TRACKPAD"))
-    )
+def _is_harmless(event: bpy.types.Event) -> bool:
+    """Whether an event looks around, or is a timer: all operators at work hear each other's."""
+    if event.type.startswith("NUMPAD"):
+        # With these keys it hides objects or sets the camera.
+        return not (event.ctrl or event.alt)
+    if event.type == "LEFTMOUSE":
+        return event.alt
+    return event.type.startswith(("MIDDLEMOUSE", "MOUSEMOVE", "NDOF", "TIMER", "TRACKPAD", "WHEEL"))
 
 
 def _draw_status(bar: bpy.types.Header, _context: bpy.types.Context) -> None:
