@@ -23,6 +23,8 @@ class Task:
     scale: tuple[float, float, float]
     artist: Artist | None = None
     density: Float | None = None
+    #: More objects that get its result: they share its mesh and have its scale.
+    others: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

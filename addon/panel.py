@@ -143,9 +143,9 @@ def sentence(reports: list[dict[str, Any]]) -> str:
     before, after = (
         sum(report[side]["n_faces"] for report in reports) for side in ("input", "output")
     )
-    objects = f"{len(reports)} objects: " if len(reports) > 1 else ""
+    meshes = f"{len(reports)} meshes: " if len(reports) > 1 else ""
     told = "".join(f"; {each}" for each in exceptions(reports))
-    return f"{objects}{before:,} faces became {after:,}{told}"
+    return f"{meshes}{before:,} faces became {after:,}{told}"
 
 
 def exceptions(reports: list[dict[str, Any]]) -> list[str]:

@@ -85,6 +85,24 @@ def test_shared_data_becomes_single_user(open_fixture: Open) -> None:
     assert first.data != second.data
 
 
+def test_selected_objects_that_share_a_mesh_go_on_sharing(open_fixture: Open) -> None:
+    first = open_fixture("03")
+    second, third = bpy.data.objects["Second"], first.copy()
+    bpy.context.scene.collection.objects.link(third)
+    first.vertex_groups.new(name="Arm").add([3], 1.0, "REPLACE")
+    first.shape_key_add(name="Basis")
+    first.shape_key_add(name="Smile")
+    third.rotation_euler = (1, 2, 3)
+    second.scale = (1, 1, 3)
+    select(first, second, third)
+    press.orbflow_remesh(faces=200)
+    assert (first.data, first.data.users) == (third.data, 2)
+    assert second.data.users == 1
+    assert len(bpy.data.meshes) == 2
+    assert [group.name for group in third.vertex_groups] == ["Arm"]
+    assert [key.name for key in third.data.shape_keys.key_blocks] == ["Basis", "Smile"]
+
+
 def test_the_object_keeps_what_is_the_artists(open_fixture: Open) -> None:
     thing = open_fixture("04")
     kept = thing.name, thing.data.name, thing.parent, thing.matrix_world.copy()

@@ -30,11 +30,15 @@ class Artist:
     lost: list[str]
 
 
-def read(thing: bpy.types.Object) -> Artist:
-    """Reads what is on an object that is not in edit mode."""
-    mesh = thing.data
+def read(things: list[bpy.types.Object]) -> Artist:
+    """Reads what is on objects of one mesh that is not in edit mode."""
+    mesh = things[0].data
     return Artist(
-        edges.read(mesh), elements.read(mesh), groups.read(thing), keys.read(mesh), _lost(thing)
+        edges.read(mesh),
+        elements.read(mesh),
+        groups.read(things[0]),
+        keys.read(mesh),
+        _lost(mesh) + [text for each in things for text in _unbound(each)],
     )
 
 
@@ -54,13 +58,15 @@ def write(
     keys.write(thing, artist.keys, mix, old)
 
 
-def _lost(thing: bpy.types.Object) -> list[str]:
-    mesh = thing.data
+def _lost(mesh: bpy.types.Mesh) -> list[str]:
     lost = ["custom normals"] if mesh.has_custom_normals else []
     if n_loose := edges.n_loose(mesh):
         lost.append(f"{n_loose:,} loose edge{'s' * (n_loose > 1)}")
-    lost += [f"binding of modifier {each.name}" for each in thing.modifiers if _is_bound(each)]
     return lost + [f"attribute {each.name}" for each in mesh.attributes if layers.is_lost(each)]
+
+
+def _unbound(thing: bpy.types.Object) -> list[str]:
+    return [f"binding of modifier {each.name}" for each in thing.modifiers if _is_bound(each)]
 
 
 def _is_bound(modifier: bpy.types.Modifier) -> bool:

@@ -128,19 +128,38 @@ def _is_editable(thing: bpy.types.Object) -> bool:
 
 def _tasks(context: bpy.types.Context, wanted: settings.Settings) -> list[Todo]:
     context.view_layer.update()
-    return [_task(each, wanted) for each in context.selected_objects if each.type == "MESH"]
+    failed: list[Todo] = []
+    # Objects that share a mesh go on sharing it where one result does for them.
+    alike: dict[Any, list[bpy.types.Object]] = {}
+    for thing in context.selected_objects:
+        if thing.type != "MESH":
+            continue
+        if reason := _why_left(thing):
+            failed.append(Failed(thing.name, reason))
+        else:
+            scale = (f"{x:.5g}" for x in thing.matrix_world.to_scale())
+            alike.setdefault((thing.data, *scale), []).append(thing)
+    return failed + [_task(things, wanted) for things in alike.values()]
 
 
-def _task(thing: bpy.types.Object, wanted: settings.Settings) -> Todo:
+def _why_left(thing: bpy.types.Object) -> str:
+    """Why an object is left as it is; empty when it is not."""
     if not _is_editable(thing):
-        return Failed(thing.name, "it is linked from another file and cannot be changed")
+        return "it is linked from another file and cannot be changed"
     if _is_being_edited(thing):
-        return Failed(thing.name, "it is not in object mode, in which Orbflow works")
-    if sculpted := _sculpted(thing):
-        return Failed(thing.name, f"apply or remove modifier {sculpted} first: it holds a sculpt")
+        return "it is not in object mode, in which Orbflow works"
+    for each in thing.modifiers:
+        if each.type == "MULTIRES" and each.total_levels:
+            return f"apply or remove modifier {each.name} first: it holds a sculpt"
+    return ""
+
+
+def _task(things: list[bpy.types.Object], wanted: settings.Settings) -> Todo:
+    thing, *others = things
     arrays = mesh_arrays.read(thing.data, wanted.marked_edges)
     scale = tuple(thing.matrix_world.to_scale())
-    task = Task(thing.name, arrays, scale, artist.read(thing))
+    names = tuple(each.name for each in others)
+    task = Task(thing.name, arrays, scale, artist.read(things), others=names)
     try:
         return replace(task, density=density.read(thing, wanted.density))
     except density.NoSuchName as error:
@@ -148,17 +167,20 @@ def _task(thing: bpy.types.Object, wanted: settings.Settings) -> Todo:
 
 
 def _replace(outcome: Done) -> dict[str, Any] | Failed:
-    """Gives an object its new mesh; returns what is told of it."""
-    given = outcome.task.artist
+    """Gives an object, and those that share its mesh, its new one; returns what is told of it."""
+    task, given = outcome.task, outcome.task.artist
     report = outcome.result.report | {"lost": given.lost if given else []}
     # A linked object may have the same name.
-    thing = bpy.data.objects.get((outcome.task.name, None))
-    if thing is None or not _is_unchanged(thing, outcome.task.arrays):
-        return Failed(outcome.task.name, "it was changed meanwhile and is left as it is now")
+    things = [bpy.data.objects.get((name, None)) for name in (task.name, *task.others)]
+    if not _are_unchanged(things, task.arrays):
+        return Failed(task.name, "it was changed meanwhile and is left as it is now")
+    thing, *others = things
     old, name = thing.data, thing.data.name
     thing.data = mesh_arrays.write(outcome.result, like=old)
     if given:
         artist.write(thing, given, outcome.result, old)
+    for each in others:
+        each.data = thing.data
     if old.users == 0:
         bpy.data.meshes.remove(old)
         thing.data.name = name
@@ -171,18 +193,13 @@ def _is_being_edited(thing: bpy.types.Object) -> bool:
     return thing.mode != "OBJECT" or thing.data.is_editmode
 
 
-def _sculpted(thing: bpy.types.Object) -> str:
-    """The name of a modifier whose sculpt belongs to the faces of the mesh; empty for none."""
-    multires = (each for each in thing.modifiers if each.type == "MULTIRES")
-    return next((each.name for each in multires if each.total_levels), "")
-
-
-def _is_unchanged(thing: bpy.types.Object, arrays: MeshArrays) -> bool:
-    """Whether another window has left an object as it was read."""
-    if thing.type != "MESH" or _is_being_edited(thing):
+def _are_unchanged(things: list[bpy.types.Object], arrays: MeshArrays) -> bool:
+    """Whether another window has left objects of one mesh as they were read."""
+    if None in things or any(each.type != "MESH" or _is_being_edited(each) for each in things):
         return False
-    now = mesh_arrays.read(thing.data)
-    return all(
+    mesh = things[0].data
+    now = mesh_arrays.read(mesh)
+    return all(each.data == mesh for each in things) and all(
         np.array_equal(getattr(now, name), getattr(arrays, name))
         for name in ("positions", "loop_start", "corner_vert")
     )
