@@ -6,6 +6,7 @@ Python objects and take 30 to 200 times as long.
 """
 
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass
 
 import bpy
@@ -36,6 +37,24 @@ _MARKS = {
     "CREASE": [("crease_edge", "FLOAT")],
     "SEAM": [(name, "BOOLEAN") for name in attributes.SEAMS],
 }
+
+
+# Settings of a mesh that tools read.
+_SETTINGS = (
+    "remesh_mode",
+    "remesh_voxel_adaptivity",
+    "remesh_voxel_size",
+    "use_auto_texspace",
+    "use_mirror_topology",
+    "use_mirror_vertex_groups",
+    "use_mirror_x",
+    "use_mirror_y",
+    "use_mirror_z",
+    "use_remesh_fix_poles",
+    "use_remesh_preserve_attributes",
+    "use_remesh_preserve_volume",
+)
+_TEXTURE_SPACE = ("texspace_location", "texspace_size")
 
 
 def read(mesh: bpy.types.Mesh, marks: Iterable[str] = ()) -> MeshArrays:
@@ -73,7 +92,7 @@ def _marked(mesh: bpy.types.Mesh, marks: Iterable[str]) -> Int | None:
 
 
 def write(arrays: MeshArrays | orbflow_native.Remeshed, like: bpy.types.Mesh) -> bpy.types.Mesh:
-    """Makes a new mesh of arrays, with the materials and custom properties of `like`."""
+    """Makes a new mesh of arrays, with the materials, properties and settings of `like`."""
     mesh = bpy.data.meshes.new(like.name)
     mesh.vertices.add(len(arrays.positions))
     mesh.loops.add(len(arrays.corner_vert))
@@ -89,4 +108,9 @@ def write(arrays: MeshArrays | orbflow_native.Remeshed, like: bpy.types.Mesh) ->
         mesh.materials.append(material)
     for key, value in like.items():
         mesh[key] = value
+        # Some kinds of properties have neither range nor tooltip.
+        with suppress(TypeError):
+            mesh.id_properties_ui(key).update_from(like.id_properties_ui(key))
+    for name in _SETTINGS + (() if like.use_auto_texspace else _TEXTURE_SPACE):
+        setattr(mesh, name, getattr(like, name))
     return mesh

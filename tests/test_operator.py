@@ -108,12 +108,21 @@ def test_the_object_keeps_what_is_the_artists(open_fixture: Open) -> None:
     kept = thing.name, thing.data.name, thing.parent, thing.matrix_world.copy()
     modifiers = [(each.name, each.type) for each in thing.modifiers]
     materials = list(thing.data.materials)
+    thing.data["wear"], thing.data["more"] = 0.5, {"deep": 1}
+    thing.data.id_properties_ui("wear").update(max=2.0, description="How worn it is")
+    thing.data.use_mirror_x, thing.data.remesh_voxel_size = True, 0.25
+    thing.data.use_auto_texspace, thing.data.texspace_size = False, (1, 2, 3)
     press.orbflow_remesh(faces=600)
     assert (thing.name, thing.data.name, thing.parent, thing.matrix_world) == kept
     assert [(each.name, each.type) for each in thing.modifiers] == modifiers
     assert list(thing.data.materials) == materials
     assert {face.material_index for face in thing.data.polygons} == {0, 1, 2}
     assert thing.data["made_by"] == "make.py"
+    assert (thing.data["wear"], thing.data["more"]["deep"]) == (0.5, 1)
+    shown = thing.data.id_properties_ui("wear").as_dict()
+    assert (shown["max"], shown["description"]) == (2.0, "How worn it is")
+    assert (thing.data.use_mirror_x, thing.data.remesh_voxel_size) == (True, 0.25)
+    assert (thing.data.use_auto_texspace, tuple(thing.data.texspace_size)) == (False, (1, 2, 3))
     low, high = (
         max(face.center[2] for face in thing.data.polygons if face.material_index == i)
         for i in (0, 2)
