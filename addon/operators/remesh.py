@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The button: Object > Orbflow Remesh."""
 
-from dataclasses import replace
 from typing import Any
 
 import bpy
@@ -159,11 +158,12 @@ def _task(things: list[bpy.types.Object], wanted: settings.Settings) -> Todo:
     arrays = mesh_arrays.read(thing.data, wanted.marked_edges)
     scale = tuple(thing.matrix_world.to_scale())
     names = tuple(each.name for each in others)
-    task = Task(thing.name, arrays, scale, artist.read(things), others=names)
+    given = artist.read(things)
     try:
-        return replace(task, density=density.read(thing, wanted.density))
+        wish = density.read(thing, wanted.density, given.groups)
     except density.NoSuchName as error:
         return Failed(thing.name, str(error))
+    return Task(thing.name, arrays, scale, given, wish, names)
 
 
 def _replace(outcome: Done) -> dict[str, Any] | Failed:
