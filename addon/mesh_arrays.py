@@ -63,29 +63,17 @@ def read(mesh: bpy.types.Mesh, marks: Iterable[str] = ()) -> MeshArrays:
         attributes.positions(mesh),
         attributes.loop_starts(mesh),
         attributes.corner_verts(mesh),
-        _materials(mesh),
+        attributes.values(mesh, "material_index", "FACE", "INT"),
         _marked(mesh, marks),
     )
-
-
-def _materials(mesh: bpy.types.Mesh) -> Int | None:
-    attribute = mesh.attributes.get("material_index")
-    if attribute is None or attribute.domain != "FACE" or not len(mesh.polygons):
-        return None
-    values = np.empty(len(mesh.polygons), np.int32)
-    attribute.data.foreach_get("value", values)
-    return values
 
 
 def _marked(mesh: bpy.types.Mesh, marks: Iterable[str]) -> Int | None:
     found = np.zeros(len(mesh.edges), bool)
     for name, kind in (each for mark in marks for each in _MARKS[mark]):
-        attribute = mesh.attributes.get(name)
-        if attribute is None or (attribute.domain, attribute.data_type) != ("EDGE", kind):
-            continue
-        values = np.empty(len(found), bool if kind == "BOOLEAN" else np.float32)
-        attribute.data.foreach_get("value", values)
-        found |= values > 0
+        values = attributes.values(mesh, name, "EDGE", kind)
+        if values is not None:
+            found |= values > 0
     if not found.any():
         return None
     return attributes.edge_verts(mesh)[found]
