@@ -5,6 +5,10 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+#: What Blender calls the attribute of seams: now, and in 4.2.
+SEAMS = ("uv_seam", ".uv_seam")
+_NUMBERS = {"BOOLEAN": np.bool_, "FLOAT": np.float32, "INT": np.int32}
+
 
 def positions(mesh: bpy.types.Mesh) -> NDArray[np.float32]:
     """The position of every vertex, (V, 3)."""
@@ -31,6 +35,16 @@ def loop_starts(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
     starts = np.empty(len(mesh.polygons), np.int32)
     mesh.polygons.foreach_get("loop_start", starts)
     return starts
+
+
+def values(mesh: bpy.types.Mesh, name: str, domain: str, kind: str) -> NDArray | None:
+    """The values of an attribute of a domain and type; none where the mesh has none such."""
+    attribute = mesh.attributes.get(name)
+    if attribute is None or (attribute.domain, attribute.data_type) != (domain, kind):
+        return None
+    found = np.empty(len(attribute.data), _NUMBERS[kind])
+    attribute.data.foreach_get("value", found)
+    return found if len(found) else None
 
 
 def _read(

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import attributes
-from .artist import groups
+from .artist.groups import Group
 
 # How bright a colour is, as Blender itself turns colours into numbers.
 _BRIGHTNESS = np.array((0.2126, 0.7152, 0.0722), np.float32)
@@ -24,15 +24,16 @@ def names(thing: bpy.types.Object | None) -> list[tuple[str, str]]:
     return groups + [(each.name, "Color Attribute") for each in thing.data.color_attributes]
 
 
-def read(thing: bpy.types.Object, name: str) -> NDArray[np.float32] | None:
+def read(thing: bpy.types.Object, name: str, groups: list[Group]) -> NDArray[np.float32] | None:
     """The density at every vertex of an object, from 0 to 1; none where no name is given.
 
-    A vertex group gives its weights, a colour its brightness. Raises `NoSuchName`.
+    A vertex group, of those given, gives its weights, a colour its brightness. Raises `NoSuchName`.
     """
     if not name:
         return None
-    if name in thing.vertex_groups:
-        return next(group.weights for group in groups.read(thing) if group.name == name)
+    for group in groups:
+        if group.name == name:
+            return group.weights
     if (attribute := thing.data.color_attributes.get(name)) is not None:
         return _brightness(thing.data, attribute)
     offered = ", ".join(each for each, _ in names(thing)) or "none"

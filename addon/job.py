@@ -23,6 +23,8 @@ class Task:
     scale: tuple[float, float, float]
     artist: Artist | None = None
     density: Float | None = None
+    #: More objects that get its result: they share its mesh and have its scale.
+    others: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -35,9 +37,9 @@ class Done:
 
 @dataclass(frozen=True)
 class Failed:
-    """A task that cannot be done, and the text of why not."""
+    """An object that cannot be done, and the text of why not."""
 
-    task: Task
+    name: str
     error: str
 
 
@@ -64,8 +66,10 @@ def remesh(
 
         try:
             result = _remesh_one(task, settings, listen, cancel)
-        except (orbflow_native.InputError, RuntimeError) as error:
-            outcomes.append(Failed(task, str(error)))
+        except orbflow_native.Cancelled:
+            raise
+        except Exception as error:
+            outcomes.append(Failed(task.name, str(error) or type(error).__name__))
         else:
             outcomes.append(Done(task, result))
     return outcomes

@@ -6,6 +6,7 @@ Python objects and take 30 to 200 times as long.
 """
 
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass
 
 import bpy
@@ -32,10 +33,28 @@ class MeshArrays:
 
 # The attributes of edges that hold the marks, and their types.
 _MARKS = {
-    "SHARP": ("sharp_edge", "BOOLEAN"),
-    "CREASE": ("crease_edge", "FLOAT"),
-    "SEAM": ("uv_seam", "BOOLEAN"),
+    "SHARP": [("sharp_edge", "BOOLEAN")],
+    "CREASE": [("crease_edge", "FLOAT")],
+    "SEAM": [(name, "BOOLEAN") for name in attributes.SEAMS],
 }
+
+
+# Settings of a mesh that tools read.
+_SETTINGS = (
+    "remesh_mode",
+    "remesh_voxel_adaptivity",
+    "remesh_voxel_size",
+    "use_auto_texspace",
+    "use_mirror_topology",
+    "use_mirror_vertex_groups",
+    "use_mirror_x",
+    "use_mirror_y",
+    "use_mirror_z",
+    "use_remesh_fix_poles",
+    "use_remesh_preserve_attributes",
+    "use_remesh_preserve_volume",
+)
+_TEXTURE_SPACE = ("texspace_location", "texspace_size")
 
 
 def read(mesh: bpy.types.Mesh, marks: Iterable[str] = ()) -> MeshArrays:
@@ -44,36 +63,24 @@ def read(mesh: bpy.types.Mesh, marks: Iterable[str] = ()) -> MeshArrays:
         attributes.positions(mesh),
         attributes.loop_starts(mesh),
         attributes.corner_verts(mesh),
-        _materials(mesh),
+        attributes.values(mesh, "material_index", "FACE", "INT"),
         _marked(mesh, marks),
     )
 
 
-def _materials(mesh: bpy.types.Mesh) -> Int | None:
-    attribute = mesh.attributes.get("material_index")
-    if attribute is None or attribute.domain != "FACE" or not len(mesh.polygons):
-        return None
-    values = np.empty(len(mesh.polygons), np.int32)
-    attribute.data.foreach_get("value", values)
-    return values
-
-
 def _marked(mesh: bpy.types.Mesh, marks: Iterable[str]) -> Int | None:
     found = np.zeros(len(mesh.edges), bool)
-    for name, kind in (_MARKS[mark] for mark in marks):
-        attribute = mesh.attributes.get(name)
-        if attribute is None or (attribute.domain, attribute.data_type) != ("EDGE", kind):
-            continue
-        values = np.empty(len(found), bool if kind == "BOOLEAN" else np.float32)
-        attribute.data.foreach_get("value", values)
-        found |= values > 0
+    for name, kind in (each for mark in marks for each in _MARKS[mark]):
+        values = attributes.values(mesh, name, "EDGE", kind)
+        if values is not None:
+            found |= values > 0
     if not found.any():
         return None
     return attributes.edge_verts(mesh)[found]
 
 
 def write(arrays: MeshArrays | orbflow_native.Remeshed, like: bpy.types.Mesh) -> bpy.types.Mesh:
-    """Makes a new mesh of arrays, with the materials, shading and custom properties of `like`."""
+    """Makes a new mesh of arrays, with the materials, properties and settings of `like`."""
     mesh = bpy.data.meshes.new(like.name)
     mesh.vertices.add(len(arrays.positions))
     mesh.loops.add(len(arrays.corner_vert))
@@ -84,22 +91,14 @@ def write(arrays: MeshArrays | orbflow_native.Remeshed, like: bpy.types.Mesh) ->
     if arrays.material_index is not None:
         attribute = mesh.attributes.new("material_index", "INT", "FACE")
         attribute.data.foreach_set("value", arrays.material_index)
-    if is_flat_shaded(like):
-        attribute = mesh.attributes.new("sharp_face", "BOOLEAN", "FACE")
-        attribute.data.foreach_set("value", np.ones(len(arrays.loop_start), bool))
     mesh.update(calc_edges=True)
     for material in like.materials:
         mesh.materials.append(material)
     for key, value in like.items():
         mesh[key] = value
+        # Some kinds of properties have neither range nor tooltip.
+        with suppress(TypeError):
+            mesh.id_properties_ui(key).update_from(like.id_properties_ui(key))
+    for name in _SETTINGS + (() if like.use_auto_texspace else _TEXTURE_SPACE):
+        setattr(mesh, name, getattr(like, name))
     return mesh
-
-
-def is_flat_shaded(mesh: bpy.types.Mesh) -> bool:
-    """Whether most faces of a mesh are shaded flat."""
-    attribute = mesh.attributes.get("sharp_face")
-    if attribute is None or attribute.domain != "FACE":
-        return False
-    flags = np.empty(len(mesh.polygons), bool)
-    attribute.data.foreach_get("value", flags)
-    return bool(2 * np.count_nonzero(flags) > len(flags))

@@ -32,6 +32,13 @@ _N_LOOKED_AT = 200
 # How much of a panel's width there is for no letter of a sentence, and how wide a letter is.
 _MARGIN_PX = 70.0
 _LETTER_PX = 6.0
+# What cleaning drops, of one and of many.
+_CLEANED = (
+    ("n_isolated", ("loose vertex", "loose vertices")),
+    ("n_degenerate", ("face of fewer than 3 corners", "faces of fewer than 3 corners")),
+    ("n_duplicates", ("face that is there twice", "faces that are there twice")),
+    ("n_doubled", ("triangle back to back with another", "triangles back to back with others")),
+)
 # What stands in an empty field.
 _PLACEHOLDERS = {"density": "Group or Color"}
 _ROWS = (
@@ -136,9 +143,9 @@ def sentence(reports: list[dict[str, Any]]) -> str:
     before, after = (
         sum(report[side]["n_faces"] for report in reports) for side in ("input", "output")
     )
-    objects = f"{len(reports)} objects: " if len(reports) > 1 else ""
+    meshes = f"{len(reports)} meshes: " if len(reports) > 1 else ""
     told = "".join(f"; {each}" for each in exceptions(reports))
-    return f"{objects}{before:,} faces became {after:,}{told}"
+    return f"{meshes}{before:,} faces became {after:,}{told}"
 
 
 def exceptions(reports: list[dict[str, Any]]) -> list[str]:
@@ -146,7 +153,17 @@ def exceptions(reports: list[dict[str, Any]]) -> list[str]:
     lost = ", ".join(sorted({each for report in reports for each in report["lost"]}))
     told = [_without_flow(reports), _without_mirror(reports), _without_marks(reports)]
     told += [_without_network(reports), f"not carried over: {lost}" if lost else ""]
+    told += [_cleaned(reports)]
     return [each for each in told if each]
+
+
+def _cleaned(reports: list[dict[str, Any]]) -> str:
+    """What cleaning has dropped before the run."""
+    counts = [
+        (sum(report["clean"][name] for report in reports), *words) for name, words in _CLEANED
+    ]
+    dropped = ", ".join(f"{n:,} {many if n > 1 else one}" for n, one, many in counts if n)
+    return f"left out: {dropped}" if dropped else ""
 
 
 def _without_marks(reports: list[dict[str, Any]]) -> str:

@@ -6,12 +6,11 @@ import math
 from typing import Any
 
 import bpy
+import orbflow_native
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
 from . import density, preferences
 
-MIN_FACES = 4
-MAX_FACES = 4_000_000
 # How many crosses of the field a result brings: enough to read the field, a tenth of a megabyte.
 N_CROSSES = 4000
 
@@ -84,8 +83,8 @@ class Settings:
         name="Faces",
         description="How many faces the result has, within a few percent",
         default=2000,
-        min=MIN_FACES,
-        max=MAX_FACES,
+        min=orbflow_native.MIN_FACES,
+        max=orbflow_native.MAX_FACES,
         soft_min=100,
         soft_max=100_000,
     )

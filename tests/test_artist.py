@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import bmesh
 import bpy
 import numpy as np
 import orbflow_native
@@ -9,9 +10,10 @@ import pytest
 from shapes import ball, on_the_ring
 from test_operator import Open, addon, press
 
+SEAM = "use_seam"  # a property: the name of the attribute is not the same in all versions
 EDGE_LAYERS = {
     "sharp_edge": ("BOOLEAN", True),
-    "uv_seam": ("BOOLEAN", True),
+    SEAM: ("BOOLEAN", True),
     "crease_edge": ("FLOAT", 0.6),
     "bevel_weight_edge": ("FLOAT", 0.25),
     "freestyle_edge": ("BOOLEAN", True),
@@ -23,16 +25,22 @@ def sphere_with_ring(layers: dict[str, tuple[str, Any]]) -> Any:  # noqa: ANN401
     """A sphere whose edges around the middle have these values."""
     bpy.ops.mesh.primitive_uv_sphere_add(segments=40, ring_count=20)
     thing = bpy.context.object
+    mesh = thing.data
+    ring = [e for e in mesh.edges if all(abs(mesh.vertices[v].co.z) < 1e-6 for v in e.vertices)]
     for name, (kind, value) in layers.items():
-        mesh = thing.data
+        if name == SEAM:
+            for edge in ring:
+                edge.use_seam = value
+            continue
         attribute = mesh.attributes.get(name) or mesh.attributes.new(name, kind, "EDGE")
-        for edge, each in zip(mesh.edges, attribute.data, strict=True):
-            if all(abs(mesh.vertices[v].co.z) < 1e-6 for v in edge.vertices):
-                each.value = value
+        for edge in ring:
+            attribute.data[edge.index].value = value
     return thing
 
 
 def values(mesh: Any, name: str) -> np.ndarray:  # noqa: ANN401
+    if name == SEAM:
+        return np.array([edge.use_seam for edge in mesh.edges])
     attribute = mesh.attributes[name]
     assert (attribute.domain, len(attribute.data)) == ("EDGE", len(mesh.edges))
     return np.array([each.value for each in attribute.data])
@@ -46,7 +54,7 @@ def test_what_is_on_edges_is_on_those_that_lie_along_them(open_fixture: Open) ->
     is_on, length = on_the_ring(mesh)
     assert length > 0.95 * 2 * np.pi
     for name, (kind, value) in EDGE_LAYERS.items():
-        assert mesh.attributes[name].data_type == kind
+        assert name == SEAM or mesh.attributes[name].data_type == kind
         wanted = np.where(is_on, value, 0)
         assert values(mesh, name) == pytest.approx(wanted), name
     assert not mesh.validate()
@@ -55,14 +63,13 @@ def test_what_is_on_edges_is_on_those_that_lie_along_them(open_fixture: Open) ->
 def test_a_mark_that_ends_halfway_round_does_so_in_the_result(open_fixture: Open) -> None:
     open_fixture("03")
     thing = sphere_with_ring({"crease_edge": ("FLOAT", 1.0)})
-    seam = thing.data.attributes.get("uv_seam")
-    seam = seam or thing.data.attributes.new("uv_seam", "BOOLEAN", "EDGE")
-    creases = values(thing.data, "crease_edge")
-    middles = [sum(thing.data.vertices[v].co.x for v in edge.vertices) for edge in thing.data.edges]
-    seam.data.foreach_set("value", (creases > 0) & (np.array(middles) > 0))
+    mesh = thing.data
+    for edge, crease in zip(mesh.edges, values(mesh, "crease_edge"), strict=True):
+        is_right = sum(mesh.vertices[v].co.x for v in edge.vertices) > 0
+        edge.use_seam = bool(crease > 0 and is_right)
     press.orbflow_remesh(faces=400)
     mesh = thing.data
-    ring, half = (values(mesh, name) > 0 for name in ("crease_edge", "uv_seam"))
+    ring, half = (values(mesh, name) > 0 for name in ("crease_edge", SEAM))
     assert half.sum() == pytest.approx(ring.sum() / 2, abs=2)
     assert not (half & ~ring).any()
     right = [edge.vertices for edge, on in zip(mesh.edges, half, strict=True) if on]
@@ -73,9 +80,9 @@ def test_marks_that_no_edge_lies_on_are_said_to_be_gone(
     open_fixture: Open, capfd: pytest.CaptureFixture[str]
 ) -> None:
     open_fixture("03")
-    thing = sphere_with_ring({"uv_seam": ("BOOLEAN", True)})
+    thing = sphere_with_ring({SEAM: ("BOOLEAN", True)})
     press.orbflow_remesh(faces=400, marked_edges=set())
-    assert "uv_seam" not in thing.data.attributes
+    assert not values(thing.data, SEAM).any()
     told = "of the marks of edges are gone: no edge lies there"
     assert told in capfd.readouterr().out
     (text,) = addon("panel").exceptions([addon("panel").last_report(thing.name)])
@@ -191,6 +198,21 @@ def test_vertex_groups_keep_names_order_and_weights(open_fixture: Open) -> None:
         assert "Empty" not in weights
 
 
+def test_weights_of_groups_that_do_not_exist_are_nothing(open_fixture: Open) -> None:
+    thing = open_fixture("03")
+    thing.data = thing.data.copy()
+    thing.vertex_groups.new(name="Arm").add([3], 0.5, "REPLACE")
+    built = bmesh.new()
+    built.from_mesh(thing.data)
+    built.verts.ensure_lookup_table()
+    built.verts[3][built.verts.layers.deform.verify()][7] = 1.0
+    built.to_mesh(thing.data)
+    built.free()
+    (arm,) = addon("artist.groups").read(thing)
+    assert (arm.weights[3], arm.weights.sum()) == (0.5, 0.5)
+    assert press.orbflow_remesh(faces=200, density="Arm") == {"FINISHED"}
+
+
 def test_shape_keys_keep_their_moves_settings_and_drivers(open_fixture: Open) -> None:
     open_fixture("03")
     thing = dressed()
@@ -201,6 +223,13 @@ def test_shape_keys_keep_their_moves_settings_and_drivers(open_fixture: Open) ->
     smile.value, smile.slider_max, wink.mute = 0.25, 2.0, True
     wink.relative_key = smile
     smile.driver_add("slider_min").driver.expression = "-0.5"
+    follow = wink.driver_add("value").driver
+    follow.expression = "other"
+    other = follow.variables.new()
+    other.name = "other"
+    other.targets[0].id_type = "KEY"
+    other.targets[0].id = thing.data.shape_keys
+    other.targets[0].data_path = 'key_blocks["Smile"].value'
     thing.active_shape_key_index = 1
     press.orbflow_remesh(faces=600)
     keys = thing.data.shape_keys
@@ -212,10 +241,14 @@ def test_shape_keys_keep_their_moves_settings_and_drivers(open_fixture: Open) ->
     for vertex, moved in zip(thing.data.vertices, smile.data, strict=True):
         wanted = tuple(vertex.co + vertex.co * vertex.co.z)
         assert tuple(moved.co) == pytest.approx(wanted, abs=0.02)
-    (driver,) = keys.animation_data.drivers
+    driver, follow = keys.animation_data.drivers
     assert driver.driver.expression == "-0.5"
     assert driver.data_path == 'key_blocks["Smile"].slider_min'
     assert len(bpy.data.shape_keys) == 1
+    assert follow.driver.variables[0].targets[0].id == keys
+    smile.value = 0.75
+    bpy.context.view_layer.update()
+    assert wink.value == pytest.approx(0.75)
 
 
 def test_what_cannot_be_carried_is_named(
@@ -229,6 +262,39 @@ def test_what_cannot_be_carried_is_named(
     told = "not carried over: attribute Turn, custom normals"
     assert told in capfd.readouterr().out
     assert told in addon("panel").exceptions([addon("panel").last_report(thing.name)])
+
+
+def test_what_belongs_to_no_face_and_what_is_bound_to_vertices_is_named(
+    open_fixture: Open,
+) -> None:
+    open_fixture("03")
+    bpy.ops.mesh.primitive_cube_add(size=4)
+    cage = bpy.context.object
+    thing = dressed()
+    built = bmesh.new()
+    built.from_mesh(thing.data)
+    places = [built.verts.new((0, 0, 3 + i)) for i in range(4)]
+    built.edges.new(places[:2])
+    built.edges.new(places[1:3])
+    built.to_mesh(thing.data)
+    built.free()
+    for name in ("Held", "Free"):
+        thing.modifiers.new(name, "HOOK").object = cage
+    thing.modifiers["Held"].vertex_indices_set([0, 1])
+    thing.modifiers.new("Soft", "CORRECTIVE_SMOOTH")
+    thing.modifiers.new("Follow", "SURFACE_DEFORM").target = cage
+    bpy.ops.object.surfacedeform_bind(modifier="Follow")
+    press.orbflow_remesh(faces=200)
+    lost = "2 loose edges, binding of modifier Follow, binding of modifier Held"
+    told = [f"not carried over: {lost}", "left out: 4 loose vertices"]
+    panel = addon("panel")
+    report = panel.last_report(thing.name)
+    assert panel.exceptions([report]) == told
+    report["clean"] |= {"n_isolated": 0, "n_degenerate": 1, "n_duplicates": 2, "n_doubled": 1200}
+    assert panel.exceptions([report])[1] == (
+        "left out: 1 face of fewer than 3 corners, 2 faces that are there twice, "
+        "1,200 triangles back to back with others"
+    )
 
 
 def test_origins_name_corners_of_the_input_and_mix_to_the_place() -> None:

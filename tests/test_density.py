@@ -96,13 +96,14 @@ def test_weights_between_and_bright_colours_are_read(open_fixture: Open) -> None
     first = open_fixture("03")
     first.vertex_groups.new(name="Other").add([3], 1.0, "REPLACE")
     first.vertex_groups.new(name="Half").add([3, 5], 0.25, "REPLACE")
-    half = addon("density").read(first, "Half")
+    groups = addon("artist.groups").read(first)
+    half = addon("density").read(first, "Half", groups)
     assert (half[3], half[5], half.sum()) == (0.25, 0.25, 0.5)
     colour = first.data.color_attributes.new("Bright", "FLOAT_COLOR", "POINT")
     for each in colour.data:
         each.color = (9, 9, 9, 1)
-    assert (addon("density").read(first, "Bright") == 1).all()
-    assert addon("density").read(first, "") is None
+    assert (addon("density").read(first, "Bright", groups) == 1).all()
+    assert addon("density").read(first, "", groups) is None
 
 
 def test_a_name_that_is_not_there_is_said_with_those_that_are(open_fixture: Open) -> None:

@@ -73,14 +73,17 @@ def operator(window: Window, faces: int) -> SimpleNamespace:
     return self
 
 
-def send(self: SimpleNamespace, context: SimpleNamespace, kind: str) -> set[str]:
-    return self.modal(context, SimpleNamespace(type=kind, value="PRESS"))
+def send(
+    self: SimpleNamespace, context: SimpleNamespace, kind: str, held: str | None = None
+) -> set[str]:
+    keys = {key: key == held for key in ("ctrl", "alt")}
+    return self.modal(context, SimpleNamespace(type=kind, value="PRESS", **keys))
 
 
 def until(ended: Callable[[], set[str]]) -> set[str]:
     for _ in range(2000):
         answer = ended()
-        if "RUNNING_MODAL" not in answer:
+        if not answer & {"RUNNING_MODAL", "PASS_THROUGH"}:
             return answer
         time.sleep(0.01)
     raise TimeoutError
@@ -106,6 +109,27 @@ def test_a_run_ends_with_one_result_and_leaves_nothing_behind(window: Window) ->
     assert len(bpy.data.objects["Spot"].data.polygons) < 520
     assert is_tidy(window)
     assert addon("panel").rows(addon("panel").last_report("Spot"))
+
+
+def test_looking_around_passes_and_edits_do_not(window: Window) -> None:
+    context = window.context()
+    self = operator(window, faces=200_000)
+    self.invoke(context, None)
+    for kind, held, passes in [
+        ("WHEELUPMOUSE", "ctrl", True),
+        ("TIMER", None, True),
+        ("TIMER_AUTOSAVE", None, True),
+        ("NUMPAD_1", None, True),
+        ("NUMPAD_0", "ctrl", False),
+        ("NUMPAD_SLASH", "alt", False),
+        ("LEFTMOUSE", "alt", True),
+        ("LEFTMOUSE", None, False),
+        ("RIGHTMOUSE", None, False),
+        ("X", None, False),
+    ]:
+        wanted = {"PASS_THROUGH" if passes else "RUNNING_MODAL"}
+        assert send(self, context, kind, held) == wanted, kind
+    self.cancel(context)
 
 
 def test_escape_stops_it_and_changes_nothing(window: Window) -> None:
@@ -142,13 +166,40 @@ def test_blender_may_take_the_operator_away(window: Window) -> None:
     assert is_tidy(window)
 
 
-def test_an_object_that_went_away_meanwhile_is_let_go(window: Window) -> None:
+def remove(spot: Any) -> None:  # noqa: ANN401
+    bpy.data.objects.remove(spot)
+
+
+def move_a_vertex(spot: Any) -> None:  # noqa: ANN401
+    spot.data.vertices[5].co.x += 0.1
+
+
+def edit(spot: Any) -> None:  # noqa: ANN401
+    bpy.context.view_layer.objects.active = spot
+    bpy.ops.object.mode_set(mode="EDIT")
+
+
+def edit_a_copy(spot: Any) -> None:  # noqa: ANN401
+    copy = spot.copy()
+    bpy.context.scene.collection.objects.link(copy)
+    edit(copy)
+
+
+@pytest.mark.parametrize("change", [remove, move_a_vertex, edit, edit_a_copy])
+def test_an_object_that_was_changed_meanwhile_is_let_go(
+    window: Window, change: Callable[[Any], None]
+) -> None:
     context = window.context()
     self = operator(window, faces=500)
     self.invoke(context, None)
-    bpy.data.objects.remove(bpy.data.objects["Spot"])
-    assert until(lambda: send(self, context, "TIMER")) == {"FINISHED"}
+    change(bpy.data.objects["Spot"])
+    assert until(lambda: send(self, context, "TIMER")) == {"CANCELLED"}
+    assert window.reports == ["it was changed meanwhile and is left as it is now"]
     assert is_tidy(window)
+    if bpy.context.object and bpy.context.object.mode == "EDIT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+    meshes = [thing.data for thing in bpy.data.objects if thing.type == "MESH"]
+    assert all(len(mesh.polygons) > 2000 for mesh in meshes)
 
 
 def test_the_status_bar_shows_the_step_and_how_to_stop(window: Window) -> None:

@@ -30,11 +30,15 @@ class Artist:
     lost: list[str]
 
 
-def read(thing: bpy.types.Object) -> Artist:
-    """Reads what is on an object that is not in edit mode."""
-    mesh = thing.data
+def read(things: list[bpy.types.Object]) -> Artist:
+    """Reads what is on objects of one mesh that is not in edit mode."""
+    mesh = things[0].data
     return Artist(
-        edges.read(mesh), elements.read(mesh), groups.read(thing), keys.read(mesh), _lost(mesh)
+        edges.read(mesh),
+        elements.read(mesh),
+        groups.read(things[0]),
+        keys.read(mesh),
+        _lost(mesh) + [text for each in things for text in _unbound(each)],
     )
 
 
@@ -56,4 +60,17 @@ def write(
 
 def _lost(mesh: bpy.types.Mesh) -> list[str]:
     lost = ["custom normals"] if mesh.has_custom_normals else []
+    if n_loose := edges.n_loose(mesh):
+        lost.append(f"{n_loose:,} loose edge{'s' * (n_loose > 1)}")
     return lost + [f"attribute {each.name}" for each in mesh.attributes if layers.is_lost(each)]
+
+
+def _unbound(thing: bpy.types.Object) -> list[str]:
+    return [f"binding of modifier {each.name}" for each in thing.modifiers if _is_bound(each)]
+
+
+def _is_bound(modifier: bpy.types.Modifier) -> bool:
+    """Whether a modifier knows the vertices of a mesh by their numbers."""
+    if modifier.type == "HOOK":
+        return len(modifier.vertex_indices) > 0
+    return any(getattr(modifier, name, False) for name in ("is_bound", "is_bind"))

@@ -8,7 +8,7 @@ import numpy as np
 import orbflow_native
 from numpy.typing import NDArray
 
-from ..attributes import edge_verts
+from ..attributes import corner_edges, edge_verts
 from . import layers
 from .layers import Layer
 
@@ -43,6 +43,11 @@ def write(mesh: bpy.types.Mesh, edges: Edges, result: orbflow_native.Remeshed) -
         values[rows] = layer.values[result.carried_from]
         if values.any():
             Layer(layer.name, layer.kind, values).write(mesh, "EDGE")
+
+
+def n_loose(mesh: bpy.types.Mesh) -> int:
+    """How many edges of a mesh belong to no face."""
+    return len(mesh.edges) - len(np.unique(corner_edges(mesh)))
 
 
 def _find(mesh: bpy.types.Mesh, ends: Int) -> NDArray[np.intp]:

@@ -31,7 +31,9 @@ def read(thing: bpy.types.Object) -> list[Group]:
     weights = [np.zeros(n, np.float32) for _ in thing.vertex_groups]
     for i, vertex in enumerate(thing.data.vertices):
         for each in vertex.groups:
-            weights[each.group][i] = each.weight
+            # Blender tolerates weights of groups that do not exist.
+            if each.group < len(weights):
+                weights[each.group][i] = each.weight
     active = thing.vertex_groups.active_index
     return [
         Group(group.name, group.lock_weight, i == active, weights[i])

@@ -54,10 +54,11 @@ def write(thing: bpy.types.Object, keys: list[Key], mix: Mix, old: bpy.types.Mes
             setattr(block, name, value)
     thing.data.shape_keys.use_relative = old.shape_keys.use_relative
     thing.active_shape_key_index = min(active, len(keys) - 1)
-    _animate(thing.data.shape_keys, old.shape_keys.animation_data)
+    _animate(thing.data.shape_keys, old.shape_keys)
 
 
-def _animate(keys: bpy.types.Key, given: bpy.types.AnimData | None) -> None:
+def _animate(keys: bpy.types.Key, old: bpy.types.Key) -> None:
+    given = old.animation_data
     if given is None:
         return
     animation = keys.animation_data_create()
@@ -65,7 +66,10 @@ def _animate(keys: bpy.types.Key, given: bpy.types.AnimData | None) -> None:
     if getattr(given, "action_slot", None) is not None:
         animation.action_slot = given.action_slot
     for driver in given.drivers:
-        animation.drivers.from_existing(src_driver=driver)
+        copied = animation.drivers.from_existing(src_driver=driver)
+        for target in (each for read in copied.driver.variables for each in read.targets):
+            if target.id == old:
+                target.id = keys
 
 
 def _places(block: bpy.types.ShapeKey) -> NDArray[np.float32]:

@@ -8,6 +8,8 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ..attributes import SEAMS
+
 # Of every type of attribute that can be carried: the property of its values, the type of an
 # array of them, and how many numbers a value has.
 _FIELDS: dict[str, tuple[str, type, int]] = {
@@ -21,7 +23,7 @@ _FIELDS: dict[str, tuple[str, type, int]] = {
     "INT8": ("value", np.int8, 1),
 }
 # Attributes that are the mesh itself, or that are carried by other means.
-_OWN = {"position", "material_index", "sharp_face", "custom_normal"}
+_OWN = {"position", "material_index", "custom_normal"}
 
 
 @dataclass(frozen=True)
@@ -76,7 +78,8 @@ def is_lost(attribute: bpy.types.Attribute) -> bool:
 
 
 def _is_artists(attribute: bpy.types.Attribute) -> bool:
-    return not attribute.name.startswith(".") and attribute.name not in _OWN
+    name = attribute.name
+    return name in SEAMS or not (name.startswith(".") or name in _OWN)
 
 
 def read(mesh: bpy.types.Mesh, domain: str) -> Iterator[Layer]:

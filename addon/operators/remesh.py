@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The button: Object > Orbflow Remesh."""
 
-from dataclasses import replace
 from typing import Any
 
 import bpy
+import numpy as np
 import orbflow_native
 
 from .. import artist, density, mesh_arrays, panel, settings
 from ..job import Done, Failed, Job, Outcome, Task, Todo, remesh
+from ..mesh_arrays import MeshArrays
 
 _TICK_S = 0.05
 
@@ -46,7 +47,7 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
             )
         finally:
             window_manager.progress_end()
-        return self._finish(context, outcomes)
+        return self._finish(outcomes)
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Starts the thread and stays modal until it has ended."""
@@ -67,7 +68,7 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
             panel.redraw_status_bar(context)
             if job.has_ended():
                 return self._end(context, job)
-        return {"PASS_THROUGH"} if _is_navigation(event) else {"RUNNING_MODAL"}
+        return {"PASS_THROUGH"} if _is_harmless(event) else {"RUNNING_MODAL"}
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Blender takes the operator away, for example when another file is opened."""
@@ -81,7 +82,7 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
         if job.is_cancelled:
             self.report({"INFO"}, "cancelled; nothing was changed")
             return {"CANCELLED"}
-        return self._finish(context, job.outcomes)
+        return self._finish(job.outcomes)
 
     def _tidy(self, context: bpy.types.Context) -> None:
         _running.clear()
@@ -89,15 +90,15 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
         context.workspace.status_text_set(None)
         panel.redraw_sidebars(context)
 
-    def _finish(self, context: bpy.types.Context, outcomes: list[Outcome]) -> set[str]:
+    def _finish(self, outcomes: list[Outcome]) -> set[str]:
         """Writes the results; the one place where errors become reports."""
-        done = [each for each in outcomes if isinstance(each, Done)]
-        failed = [each for each in outcomes if isinstance(each, Failed)]
+        told = [_replace(each) if isinstance(each, Done) else each for each in outcomes]
+        reports = [each for each in told if not isinstance(each, Failed)]
+        failed = [each for each in told if isinstance(each, Failed)]
         texts = [each.error for each in failed]
         if len(outcomes) > 1:
-            texts = [f"{each.task.name}: {each.error}" for each in failed]
-        reports = [_replace(context, each) for each in done]
-        if not done:
+            texts = [f"{each.name}: {each.error}" for each in failed]
+        if not reports:
             self.report({"ERROR"}, "; ".join(texts))
             return {"CANCELLED"}
         if texts:
@@ -126,34 +127,60 @@ def _is_editable(thing: bpy.types.Object) -> bool:
 
 def _tasks(context: bpy.types.Context, wanted: settings.Settings) -> list[Todo]:
     context.view_layer.update()
-    return [
-        _task(each, wanted)
-        for each in context.selected_objects
-        if each.type == "MESH" and _is_editable(each)
-    ]
+    failed: list[Todo] = []
+    # Objects that share a mesh go on sharing it where one result does for them.
+    alike: dict[Any, list[bpy.types.Object]] = {}
+    for thing in context.selected_objects:
+        if thing.type != "MESH":
+            continue
+        if reason := _why_left(thing):
+            failed.append(Failed(thing.name, reason))
+        else:
+            scale = (f"{x:.5g}" for x in thing.matrix_world.to_scale())
+            alike.setdefault((thing.data, *scale), []).append(thing)
+    return failed + [_task(things, wanted) for things in alike.values()]
 
 
-def _task(thing: bpy.types.Object, wanted: settings.Settings) -> Todo:
+def _why_left(thing: bpy.types.Object) -> str:
+    """Why an object is left as it is; empty when it is not."""
+    if not _is_editable(thing):
+        return "it is linked from another file and cannot be changed"
+    if _is_being_edited(thing):
+        return "it is not in object mode, in which Orbflow works"
+    for each in thing.modifiers:
+        if each.type == "MULTIRES" and each.total_levels:
+            return f"apply or remove modifier {each.name} first: it holds a sculpt"
+    return ""
+
+
+def _task(things: list[bpy.types.Object], wanted: settings.Settings) -> Todo:
+    thing, *others = things
     arrays = mesh_arrays.read(thing.data, wanted.marked_edges)
     scale = tuple(thing.matrix_world.to_scale())
-    task = Task(thing.name, arrays, scale, artist.read(thing))
+    names = tuple(each.name for each in others)
+    given = artist.read(things)
     try:
-        return replace(task, density=density.read(thing, wanted.density))
+        wish = density.read(thing, wanted.density, given.groups)
     except density.NoSuchName as error:
-        return Failed(task, str(error))
+        return Failed(thing.name, str(error))
+    return Task(thing.name, arrays, scale, given, wish, names)
 
 
-def _replace(context: bpy.types.Context, outcome: Done) -> dict[str, Any]:
-    """Gives an object its new mesh; returns what is told of it."""
-    given = outcome.task.artist
+def _replace(outcome: Done) -> dict[str, Any] | Failed:
+    """Gives an object, and those that share its mesh, its new one; returns what is told of it."""
+    task, given = outcome.task, outcome.task.artist
     report = outcome.result.report | {"lost": given.lost if given else []}
-    thing = context.scene.objects.get(outcome.task.name)
-    if thing is None:
-        return report
+    # A linked object may have the same name.
+    things = [bpy.data.objects.get((name, None)) for name in (task.name, *task.others)]
+    if not _are_unchanged(things, task.arrays):
+        return Failed(task.name, "it was changed meanwhile and is left as it is now")
+    thing, *others = things
     old, name = thing.data, thing.data.name
     thing.data = mesh_arrays.write(outcome.result, like=old)
     if given:
         artist.write(thing, given, outcome.result, old)
+    for each in others:
+        each.data = thing.data
     if old.users == 0:
         bpy.data.meshes.remove(old)
         thing.data.name = name
@@ -161,10 +188,31 @@ def _replace(context: bpy.types.Context, outcome: Done) -> dict[str, Any]:
     return report
 
 
-def _is_navigation(event: bpy.types.Event) -> bool:
-    return event.type in {"MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE", "MOUSEMOVE"} or (
-        event.type.startswith(("NDOF", "NUMPAD", "TRACKPAD"))
+def _is_being_edited(thing: bpy.types.Object) -> bool:
+    """Whether a mode holds a mesh of its own, which it would write over another."""
+    return thing.mode != "OBJECT" or thing.data.is_editmode
+
+
+def _are_unchanged(things: list[bpy.types.Object], arrays: MeshArrays) -> bool:
+    """Whether another window has left objects of one mesh as they were read."""
+    if None in things or any(each.type != "MESH" or _is_being_edited(each) for each in things):
+        return False
+    mesh = things[0].data
+    now = mesh_arrays.read(mesh)
+    return all(each.data == mesh for each in things) and all(
+        np.array_equal(getattr(now, name), getattr(arrays, name))
+        for name in ("positions", "loop_start", "corner_vert")
     )
+
+
+def _is_harmless(event: bpy.types.Event) -> bool:
+    """Whether an event looks around, or is a timer: all operators at work hear each other's."""
+    if event.type.startswith("NUMPAD"):
+        # With these keys it hides objects or sets the camera.
+        return not (event.ctrl or event.alt)
+    if event.type == "LEFTMOUSE":
+        return event.alt
+    return event.type.startswith(("MIDDLEMOUSE", "MOUSEMOVE", "NDOF", "TIMER", "TRACKPAD", "WHEEL"))
 
 
 def _draw_status(bar: bpy.types.Header, _context: bpy.types.Context) -> None:
