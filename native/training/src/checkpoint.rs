@@ -18,6 +18,9 @@ use crate::settings::Settings;
 pub struct State {
     pub settings: Settings,
     pub step: usize,
+    /// The sum of the set that was trained on; older checkpoints do not say it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub set: Option<u64>,
 }
 
 /// Where the checkpoint of a run is, and what it was and will be.
@@ -119,7 +122,11 @@ mod tests {
 
     fn state(step: usize) -> State {
         let settings = Settings::default();
-        State { settings, step }
+        State {
+            settings,
+            step,
+            set: None,
+        }
     }
 
     fn keep(run: &Path, step: usize) {

@@ -35,6 +35,8 @@ pub struct Training {
     settings: Settings,
     device: Device,
     step: usize,
+    /// The sum of the set that it is trained on.
+    set: Option<u64>,
 }
 
 /// A line of the log.
@@ -78,6 +80,15 @@ pub enum TrainError {
         /// Where.
         path: PathBuf,
     },
+    /// The run was begun with another set.
+    #[error(
+        "the run in {path} was begun with another set, or with this one before it had grown; choose \
+         another folder"
+    )]
+    OtherSet {
+        /// Where.
+        path: PathBuf,
+    },
     /// The loss is not a number any more.
     #[error("the loss of step {step} is not finite; a smaller rate may help")]
     Diverged {
@@ -97,15 +108,24 @@ impl Training {
             settings,
             device,
             step: 0,
+            set: None,
         }
     }
 
-    /// Continues from a checkpoint, of whatever device, or begins where there is none.
+    /// Continues from a checkpoint, of whatever device, or begins where there is none. `set` is the sum
+    /// of the set that the samples are of, if they are of one.
     ///
     /// # Errors
-    /// [`TrainError`], also when the checkpoint was made with other settings.
-    pub fn resumed(settings: Settings, device: &Device, run: &Path) -> Result<Self, TrainError> {
+    /// [`TrainError`], also when the checkpoint was made with other settings, or says of which set it is
+    /// and that is another one.
+    pub fn resumed(
+        settings: Settings,
+        set: Option<u64>,
+        device: &Device,
+        run: &Path,
+    ) -> Result<Self, TrainError> {
         let mut training = Self::new(settings, device);
+        training.set = set;
         let checkpoint = Checkpoint::of(run);
         let Some(folder) = checkpoint.recovered()? else {
             return Ok(training);
@@ -114,6 +134,10 @@ impl Training {
         if state.settings != training.settings {
             let path = folder.to_owned();
             return Err(TrainError::OtherSettings { path });
+        }
+        if state.set.is_some() && state.set != set {
+            let path = folder.to_owned();
+            return Err(TrainError::OtherSet { path });
         }
         let record = ModuleRecord::load(folder.join("network.bpk"));
         let record = record.map_err(|e: RecordError| broken(folder, &e))?;
@@ -244,6 +268,7 @@ impl Training {
         let state = State {
             settings: self.settings.clone(),
             step: self.step,
+            set: self.set,
         };
         Checkpoint::of(run).replace(&state, |folder| {
             let record = self.network.clone().into_record();

@@ -116,7 +116,7 @@ fn a_resumed_run_equals_an_uninterrupted_one() {
     let path = |name: &str| cut.path().join(name);
     fs::rename(path("checkpoint"), path("checkpoint.old")).unwrap();
     fs::write(path("log.jsonl"), &logged[..logged.len() - 9]).unwrap();
-    let mut second = Training::resumed(settings, &Device::flex(), cut.path()).unwrap();
+    let mut second = Training::resumed(settings, None, &Device::flex(), cut.path()).unwrap();
     assert_eq!(second.step(), 4);
     second.run(both, cut.path(), &quiet).unwrap();
     assert_eq!(logged, log(&cut).unwrap());
@@ -135,10 +135,28 @@ fn other_settings_do_not_resume() {
         rate: 1e-3,
         ..settings
     };
-    let error = Training::resumed(other, &Device::flex(), folder.path())
+    let error = Training::resumed(other, None, &Device::flex(), folder.path())
         .err()
         .unwrap();
     assert!(error.to_string().contains("other settings"), "{error}");
+}
+
+#[test]
+fn another_set_does_not_resume_but_a_checkpoint_that_names_none_does() {
+    let (settings, folder) = (small(), tempfile::tempdir().unwrap());
+    let samples = samples(3, &settings.sizes.levels);
+    let both = [&samples[..2], &samples[2..]];
+    let resumed =
+        |set: Option<u64>| Training::resumed(settings.clone(), set, &Device::flex(), folder.path());
+    cut_in_its_sixth_step(&settings, both, folder.path());
+    let mut unnamed = resumed(Some(7)).unwrap();
+    assert_eq!(unnamed.step(), 4);
+    unnamed.run(both, folder.path(), &Progress::none()).unwrap();
+    assert_eq!(resumed(Some(7)).unwrap().step(), 12);
+    for other in [Some(8), None] {
+        let error = resumed(other).err().unwrap();
+        assert!(error.to_string().contains("another set"), "{error}");
+    }
 }
 
 #[test]
