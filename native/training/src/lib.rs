@@ -28,5 +28,6 @@ pub mod settings;
 pub mod shapes;
 mod sources;
 pub mod thesis;
+mod tree;
 pub mod whole;
 mod zips;

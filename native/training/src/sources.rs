@@ -13,7 +13,7 @@ use thiserror::Error;
 use crate::licence::Licences;
 use crate::set::Split;
 use crate::shapes::shape;
-use crate::zips::Zip;
+use crate::tree::Tree;
 
 /// Of a hundred files or seeds, how many are held back, with all their parts.
 const HELD_BACK_PCT: usize = 15;
@@ -67,20 +67,6 @@ pub enum SourceError {
     },
 }
 
-/// Files below one folder or in one zip file.
-pub struct Tree {
-    root: Root,
-    /// What its files are called from outside; empty for a single file.
-    name: String,
-    /// All files, by their path from the root with `/` between.
-    files: Vec<String>,
-}
-
-enum Root {
-    Folder(PathBuf),
-    Zip(Zip),
-}
-
 /// The seeds and the files of folders, zip files and meshes: seeds first, then files in the order of
 /// their paths. Files of unknown licence are under `licence`.
 ///
@@ -93,9 +79,8 @@ pub fn items(
 ) -> Result<Vec<Item>, SourceError> {
     let mut items = seeds(n_procedural, seed);
     for path in given {
-        let name = path.canonicalize().unwrap_or_else(|_| path.clone());
-        let name = name.file_name().unwrap_or_default();
-        add(path, &name.to_string_lossy(), licence, &mut items)?;
+        let name = name_of(path);
+        add(path, &name, licence, &mut items)?;
     }
     if items.is_empty() {
         let n_given = given.len();
@@ -110,6 +95,16 @@ pub fn items(
             Err(SourceError::Twice { name })
         }
     }
+}
+
+/// What a place is called; a link is called as it calls itself, which is what its folder has.
+fn name_of(path: &Path) -> String {
+    let whole = match path.file_name() {
+        Some(_) => None,
+        None => path.canonicalize().ok(),
+    };
+    let name = whole.as_deref().unwrap_or(path).file_name();
+    name.unwrap_or_default().to_string_lossy().into_owned()
 }
 
 fn seeds(n: usize, first: u64) -> Vec<Item> {
@@ -169,18 +164,16 @@ fn add(
 fn add_tree(tree: Tree, licence: Option<&str>, items: &mut Vec<Item>) -> Result<(), SourceError> {
     let licences = Licences::of(&tree);
     let tree = Arc::new(tree);
-    for file in &tree.files {
+    for file in tree.files() {
         let name = tree.name_of(file);
-        if let (Root::Folder(root), true) = (&tree.root, is_zip(Path::new(file))) {
-            add(&root.join(file), &name, licence, items)?;
+        let said = licences.licence_of(file);
+        if let (Some(path), true) = (tree.path_of(file), is_zip(Path::new(file))) {
+            add(&path, &name, licence, items)?;
         } else if Format::from_path(Path::new(file)).is_some() {
             let folder = Path::new(&name).parent().and_then(Path::file_name);
             items.push(Item {
                 category: folder.unwrap_or_default().to_string_lossy().into_owned(),
-                licence: match (licences.licence_of(file), licence) {
-                    (Some(said), _) => said,
-                    (None, given) => given.unwrap_or("unknown").to_owned(),
-                },
+                licence: said.unwrap_or_else(|| licence.unwrap_or("unknown").to_owned()),
                 split: split_of(file),
                 origin: Origin::File(tree.clone(), file.clone()),
                 name,
@@ -234,78 +227,30 @@ impl Item {
     }
 }
 
-impl Tree {
-    fn of_file(path: &Path, name: &str) -> Self {
-        Self {
-            root: Root::Folder(path.parent().unwrap_or(Path::new("")).to_owned()),
-            name: String::new(),
-            files: vec![name.to_owned()],
-        }
-    }
-
-    fn of_folder(root: &Path, name: &str) -> io::Result<Self> {
-        let mut files = Vec::new();
-        list(root, "", &mut files)?;
-        Ok(Self {
-            root: Root::Folder(root.to_owned()),
-            name: name.to_owned(),
-            files,
-        })
-    }
-
-    fn of_zip(path: &Path, name: &str) -> Result<Self, String> {
-        let zip = Zip::open(path)?;
-        Ok(Self {
-            files: zip.names().cloned().collect(),
-            root: Root::Zip(zip),
-            name: name.to_owned(),
-        })
-    }
-
-    /// What a file of it is called from outside.
-    fn name_of(&self, file: &str) -> String {
-        if self.name.is_empty() {
-            return file.to_owned();
-        }
-        format!("{}/{file}", self.name)
-    }
-
-    /// All files, by their path from the root with `/` between.
-    pub fn files(&self) -> &[String] {
-        &self.files
-    }
-
-    /// The bytes of a file.
-    ///
-    /// # Errors
-    /// Why they cannot be read, in words.
-    pub fn read(&self, file: &str) -> Result<Vec<u8>, String> {
-        match &self.root {
-            Root::Folder(root) => fs::read(root.join(file)).map_err(|e| e.to_string()),
-            Root::Zip(zip) => zip.read(file),
-        }
-    }
-}
-
-/// The files of a folder and its subfolders, in the order of their names; links to folders are not
-/// followed, they may lead back.
-fn list(folder: &Path, below: &str, files: &mut Vec<String>) -> io::Result<()> {
-    let mut entries: Vec<fs::DirEntry> = fs::read_dir(folder)?.collect::<io::Result<_>>()?;
-    entries.sort_by_key(fs::DirEntry::path);
-    for entry in entries {
-        let name = format!("{below}{}", entry.file_name().to_string_lossy());
-        if entry.file_type()?.is_dir() {
-            list(&entry.path(), &format!("{name}/"), files)?;
-        } else if entry.path().is_file() {
-            files.push(name);
-        }
-    }
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_is_called_as_it_calls_itself() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        fs::create_dir_all(path("kept/models")).unwrap();
+        fs::write(
+            path("kept/MD5-1234"),
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+        )
+        .unwrap();
+        for link in ["cat.obj", "kept/models/dog.obj"] {
+            std::os::unix::fs::symlink(path("kept/MD5-1234"), path(link)).unwrap();
+            let items = items(&[path(link)], (0, 0), None).unwrap();
+            assert!(link.ends_with(&items[0].name), "{}", items[0].name);
+            assert!(matches!(items[0].read(), Ok(Found::File(_))));
+        }
+        let dots = items(&[path("kept/models/..")], (0, 0), None).unwrap();
+        assert_eq!(dots[0].name, "kept/models/dog.obj");
+    }
 
     #[test]
     fn a_file_stays_on_its_side() {
