@@ -1,5 +1,6 @@
 //! What a set is made from: files below folders and in zip files, and seeds.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -78,9 +79,11 @@ pub fn items(
     licence: Option<&str>,
 ) -> Result<Vec<Item>, SourceError> {
     let mut items = seeds(n_procedural, seed);
+    let mut beside = BTreeMap::new();
     for path in given {
         let name = name_of(path);
-        add(path, &name, licence, &mut items)?;
+        let said = licence_beside(path, &name, &mut beside);
+        add(path, &name, said.as_deref().or(licence), &mut items)?;
     }
     if items.is_empty() {
         let n_given = given.len();
@@ -105,6 +108,23 @@ fn name_of(path: &Path) -> String {
     };
     let name = whole.as_deref().unwrap_or(path).file_name();
     name.unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// What the folder of a mesh or zip file that is given by itself says of its licence; each folder is
+/// read once.
+fn licence_beside(
+    path: &Path,
+    name: &str,
+    read: &mut BTreeMap<PathBuf, Licences>,
+) -> Option<String> {
+    if path.is_dir() {
+        return None;
+    }
+    let folder = Tree::folder_of(path);
+    let licences = read
+        .entry(folder.to_owned())
+        .or_insert_with(|| Licences::of(&Tree::of_files_in(folder)));
+    licences.licence_of(name)
 }
 
 fn seeds(n: usize, first: u64) -> Vec<Item> {
@@ -168,7 +188,7 @@ fn add_tree(tree: Tree, licence: Option<&str>, items: &mut Vec<Item>) -> Result<
         let name = tree.name_of(file);
         let said = licences.licence_of(file);
         if let (Some(path), true) = (tree.path_of(file), is_zip(Path::new(file))) {
-            add(&path, &name, licence, items)?;
+            add(&path, &name, said.as_deref().or(licence), items)?;
         } else if Format::from_path(Path::new(file)).is_some() {
             let folder = Path::new(&name).parent().and_then(Path::file_name);
             items.push(Item {
@@ -229,7 +249,64 @@ impl Item {
 
 #[cfg(test)]
 mod tests {
+    use std::io::Write;
+
+    use rawzip::ZipArchiveWriter;
+
     use super::*;
+
+    /// A zip file of files as they are.
+    fn zip(files: &[(&str, &str)]) -> Result<Vec<u8>, rawzip::Error> {
+        let mut bytes = Vec::new();
+        let mut archive = ZipArchiveWriter::new(&mut bytes);
+        for (name, text) in files {
+            let (mut entry, config) = archive.new_file(*name).start()?;
+            let mut out = config.wrap(&mut entry);
+            out.write_all(text.as_bytes())?;
+            let (_, descriptor) = out.finish()?;
+            entry.finish(descriptor)?;
+        }
+        archive.finish()?;
+        Ok(bytes)
+    }
+
+    fn licences(given: &[PathBuf]) -> Vec<(String, String)> {
+        let items = items(given, (0, 0), Some("asked")).expect("there are meshes");
+        let said = items.into_iter().map(|item| (item.name, item.licence));
+        said.collect()
+    }
+
+    #[test]
+    fn the_licence_beside_a_mesh_or_zip_is_its_own_unless_the_zip_has_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let models = folder.path().join("models");
+        fs::create_dir(&models).unwrap();
+        let put = |name: &str, bytes: &[u8]| fs::write(models.join(name), bytes).unwrap();
+        put("cat.obj", b"");
+        put("dog.obj", b"");
+        put("plain.zip", &zip(&[("fish.obj", "")]).unwrap());
+        let own = zip(&[("fish.obj", ""), ("README", "CC0")]).unwrap();
+        put("own.zip", &own);
+        put("broken.zip", b"PK nonsense");
+        put("LICENSE", b"The MIT License");
+        put("table.csv", b"file,licence\ndog.obj,by the table\n");
+        let wanted = [
+            ("broken.zip", "MIT"),
+            ("cat.obj", "MIT"),
+            ("dog.obj", "by the table"),
+            ("own.zip/fish.obj", "CC0-1.0"),
+            ("plain.zip/fish.obj", "MIT"),
+        ];
+        let below = wanted.map(|(name, licence)| (format!("models/{name}"), licence.to_owned()));
+        assert_eq!(licences(std::slice::from_ref(&models)), below);
+        let names = ["broken.zip", "cat.obj", "dog.obj", "own.zip", "plain.zip"];
+        let each = wanted.map(|(name, licence)| (name.to_owned(), licence.to_owned()));
+        assert_eq!(licences(&names.map(|name| models.join(name))), each);
+
+        fs::remove_file(models.join("LICENSE")).unwrap();
+        let asked = [("cat.obj".to_owned(), "asked".to_owned())];
+        assert_eq!(licences(&[models.join("cat.obj")]), asked);
+    }
 
     #[cfg(unix)]
     #[test]

@@ -44,6 +44,23 @@ impl Tree {
         })
     }
 
+    /// The files of a folder without its subfolders; none where it cannot be read.
+    pub fn of_files_in(folder: &Path) -> Self {
+        let mut files: Vec<String> = fs::read_dir(folder)
+            .into_iter()
+            .flatten()
+            .flatten()
+            .filter(|entry| entry.path().is_file())
+            .map(|entry| entry.file_name().to_string_lossy().into_owned())
+            .collect();
+        files.sort_unstable();
+        Self {
+            root: Root::Folder(folder.to_owned()),
+            name: String::new(),
+            files,
+        }
+    }
+
     /// The files of a zip file.
     ///
     /// # Errors
