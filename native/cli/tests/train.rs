@@ -269,6 +269,10 @@ fn settings_and_devices_that_cannot_be_are_named() {
     assert_eq!(done.code, 3);
     assert!(done.err.contains("without the engine cuda"), "{}", done.err);
     assert_eq!(run(&["prepare", "-o", &set]).code, 2);
+    let many = "2000000000000000000";
+    let done = run(&["prepare", "--procedural", many, "-o", &set]);
+    assert_eq!(done.code, 2);
+    assert!(done.err.contains("0..=1000000"), "{}", done.err);
     assert_eq!(folder.names(), ["c.toml"]);
 }
 
