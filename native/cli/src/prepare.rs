@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use orbflow_training::prepare::{Settings, prepare as prepare_set};
+use orbflow_training::prepare::{MOST_MADE, Settings, prepare as prepare_set};
 use orbflow_training::thesis;
 
 use crate::bar::with_bar;
@@ -23,7 +23,7 @@ pub struct Prepare {
     #[arg(short, long, value_name = "SET")]
     pub output: PathBuf,
     /// How many shapes to make besides, 15 of 100 to be held back
-    #[arg(long, value_name = "N", default_value_t = Settings::default().n_procedural)]
+    #[arg(long, value_name = "N", default_value_t = Settings::default().n_procedural, value_parser = whole(0..=MOST_MADE as u64))]
     pub procedural: usize,
     /// The seed of the first made shape
     #[arg(long, value_name = "S", default_value_t = Settings::default().seed)]

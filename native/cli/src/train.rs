@@ -13,7 +13,9 @@ use orbflow_training::run::{TrainError, Training};
 use orbflow_training::sample::{Sample, SampleError};
 use orbflow_training::set::{Set, SetError};
 use orbflow_training::settings::{Settings, SettingsError};
+use orbflow_training::whole;
 use serde::Serialize;
+use serde_json::Value;
 use thiserror::Error;
 
 use crate::bar::with_bar;
@@ -118,8 +120,13 @@ pub fn train(arguments: &Train, interrupt: &Interrupt) -> Result<(), Error> {
     let [training, held_out] = with_bar(token, |progress| load(&set, levels, progress))?;
     let run = &arguments.output;
     fs::create_dir_all(run).map_err(|cause| write_error(run, cause))?;
-    let mut trained = Training::resumed(settings, &device, run)?;
-    write_shapes(&about, manifest.is_complete, [&training, &held_out], run)?;
+    let mut trained = Training::resumed(settings, Some(set.sum()), &device, run)?;
+    let shapes = run.join("shapes.json");
+    // What a run without a checkpoint left may be of another set or of other settings.
+    if trained.step() == 0 || !is_of(&about, &shapes) {
+        let is_complete = manifest.is_complete;
+        write_shapes(&about, is_complete, [&training, &held_out], &shapes)?;
+    }
     with_bar(token, |progress| {
         trained.run([&training, &held_out], run, progress)
     })?;
@@ -157,16 +164,19 @@ pub fn read_settings<T>(
     }
 }
 
+/// Whether a file of shapes is whole and of the set of this sentence.
+fn is_of(set: &str, path: &Path) -> bool {
+    let text = fs::read(path).unwrap_or_default();
+    let shapes = serde_json::from_slice::<Value>(&text);
+    shapes.is_ok_and(|shapes| shapes["set"] == set)
+}
+
 fn write_shapes(
     set: &str,
     is_complete: bool,
     [training, held_out]: [&[Sample]; 2],
-    run: &Path,
+    path: &Path,
 ) -> Result<(), Error> {
-    let path = run.join("shapes.json");
-    if path.exists() {
-        return Ok(());
-    }
     let shapes = Shapes {
         set,
         is_complete,
@@ -175,11 +185,11 @@ fn write_shapes(
         baselines: baselines(held_out)?,
     };
     let text = serde_json::to_vec_pretty(&shapes).map_err(io::Error::from);
-    write(&path, &text.map_err(|cause| write_error(&path, cause))?)
+    write(path, &text.map_err(|cause| write_error(path, cause))?)
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
-    fs::write(path, bytes).map_err(|cause| write_error(path, cause))
+    whole::write(path, bytes).map_err(|cause| write_error(path, cause))
 }
 
 fn write_error(path: &Path, cause: io::Error) -> Error {

@@ -92,6 +92,38 @@ fn a_run_leaves_weights_that_embed_and_evaluate_take() {
 }
 
 #[test]
+fn a_run_is_of_one_set_and_says_which() {
+    let folder = Folder::new();
+    let set = prepared(&folder);
+    let weights = trained(&folder, &set);
+    let (other, output) = (folder.path("other.set"), folder.path("run"));
+    let done = run(&["prepare", "--procedural", "2", "-o", &other]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let config = folder.path("c.toml");
+    let train = |set: &str| run(&["train", set, "--config", &config, "-o", &output]);
+    let shapes = format!("{output}/shapes.json");
+    let [first, text] = [&weights, &shapes].map(|path| fs::read(path).unwrap());
+
+    let refused = train(&other);
+    assert_eq!(refused.code, 3);
+    assert!(refused.err.contains("another set"), "{}", refused.err);
+    assert!(first == fs::read(&weights).unwrap() && text == fs::read(&shapes).unwrap());
+
+    fs::write(&shapes, &text[..text.len() / 2]).unwrap();
+    let done = train(&set);
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert!(first == fs::read(&weights).unwrap() && text == fs::read(&shapes).unwrap());
+
+    // Nothing of a run without a checkpoint is gone on with.
+    fs::remove_dir_all(format!("{output}/checkpoint")).unwrap();
+    let done = train(&other);
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert_eq!(json(&shapes)["n_training"], 2);
+    let lines = fs::read_to_string(format!("{output}/log.jsonl")).unwrap();
+    assert_eq!(lines.lines().count(), 1, "{lines}");
+}
+
+#[test]
 fn the_programs_own_weights_are_measured_and_what_they_were_given_is_there_to_see() {
     let folder = Folder::new();
     let set = prepared(&folder);
@@ -237,6 +269,10 @@ fn settings_and_devices_that_cannot_be_are_named() {
     assert_eq!(done.code, 3);
     assert!(done.err.contains("without the engine cuda"), "{}", done.err);
     assert_eq!(run(&["prepare", "-o", &set]).code, 2);
+    let many = "2000000000000000000";
+    let done = run(&["prepare", "--procedural", many, "-o", &set]);
+    assert_eq!(done.code, 2);
+    assert!(done.err.contains("0..=1000000"), "{}", done.err);
     assert_eq!(folder.names(), ["c.toml"]);
 }
 

@@ -6,6 +6,7 @@ use std::path::Path;
 use plotters::prelude::*;
 
 use crate::run::{Line, TrainError, file_error};
+use crate::whole;
 
 const SIZE: (u32, u32) = (900, 640);
 const TEXT: (&str, u32) = ("sans-serif", 14);
@@ -28,7 +29,7 @@ pub fn draw_log(run: &Path) -> Result<(), TrainError> {
         .filter_map(|line| serde_json::from_str(line).ok())
         .collect();
     let path = run.join("curve.svg");
-    fs::write(&path, curve(&lines)).map_err(|cause| file_error(&path, cause))
+    whole::write(&path, curve(&lines).as_bytes()).map_err(|cause| file_error(&path, cause))
 }
 
 /// Draws the lines of a log as SVG: loss and held-back distortion above, held-back folds below.

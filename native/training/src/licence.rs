@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use crate::sources::Tree;
+use crate::tree::Tree;
 
 /// Words that stand in the texts of licences, and their short names. Where one text has the words of
 /// another, that stands first.

@@ -23,6 +23,8 @@ const LEAST_FACES: usize = 32;
 const MOST_PARTS: usize = 3;
 /// Parts keep at most so many faces: evaluation finishes maps of this size.
 pub const WHOLE_FACES: usize = 16_000;
+/// At most so many shapes are made: beyond, the list of their names alone would fill the memory.
+pub const MOST_MADE: usize = 1_000_000;
 /// Longer reasons are cut: a hostile file may have a word of a megabyte, and reasons name words.
 const LONGEST_REASON: usize = 300;
 /// Sources between two reports of progress, and what a kill can lose.
@@ -57,7 +59,10 @@ impl Default for Settings {
 
 impl Settings {
     fn check(&self) -> Result<(), PrepareError> {
-        let n_faces = self.n_faces;
+        let (n_faces, n_made) = (self.n_faces, self.n_procedural);
+        if n_made > MOST_MADE {
+            return Err(PrepareError::Many { n_made });
+        }
         match &self.targets {
             None => Ok(()),
             Some(_) if n_faces < N_FACES => Err(PrepareError::Coarse { n_faces }),
@@ -80,6 +85,12 @@ pub enum PrepareError {
     Coarse {
         /// How many they are to have.
         n_faces: usize,
+    },
+    /// More shapes are to be made than can be.
+    #[error("{n_made} shapes cannot be made, at most {MOST_MADE} can be")]
+    Many {
+        /// How many were asked for.
+        n_made: usize,
     },
     /// There is nothing to make it from.
     #[error(transparent)]

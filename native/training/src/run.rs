@@ -1,7 +1,6 @@
 //! The loop: batches, steps, log, checkpoints.
 
-use std::fs::{self, File, OpenOptions};
-use std::io::{self, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use burn::module::Module;
@@ -19,8 +18,9 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::curve::draw_log;
+use crate::checkpoint::{Checkpoint, State, broken, read_state};
 use crate::evaluate::{Figures, evaluate};
+use crate::log;
 use crate::loss::Faces;
 use crate::net::BurnNetwork;
 use crate::optimizer::optimizer;
@@ -35,6 +35,8 @@ pub struct Training {
     settings: Settings,
     device: Device,
     step: usize,
+    /// The sum of the set that it is trained on.
+    set: Option<u64>,
 }
 
 /// A line of the log.
@@ -78,19 +80,21 @@ pub enum TrainError {
         /// Where.
         path: PathBuf,
     },
+    /// The run was begun with another set.
+    #[error(
+        "the run in {path} was begun with another set, or with this one before it had grown; choose \
+         another folder"
+    )]
+    OtherSet {
+        /// Where.
+        path: PathBuf,
+    },
     /// The loss is not a number any more.
     #[error("the loss of step {step} is not finite; a smaller rate may help")]
     Diverged {
         /// Which step.
         step: usize,
     },
-}
-
-/// What a checkpoint says besides its tensors.
-#[derive(Serialize, Deserialize)]
-struct State {
-    settings: Settings,
-    step: usize,
 }
 
 impl Training {
@@ -104,31 +108,43 @@ impl Training {
             settings,
             device,
             step: 0,
+            set: None,
         }
     }
 
-    /// Continues from a checkpoint, of whatever device, or begins where there is none.
+    /// Continues from a checkpoint, of whatever device, or begins where there is none. `set` is the sum
+    /// of the set that the samples are of, if they are of one.
     ///
     /// # Errors
-    /// [`TrainError`], also when the checkpoint was made with other settings.
-    pub fn resumed(settings: Settings, device: &Device, run: &Path) -> Result<Self, TrainError> {
+    /// [`TrainError`], also when the checkpoint was made with other settings, or says of which set it is
+    /// and that is another one.
+    pub fn resumed(
+        settings: Settings,
+        set: Option<u64>,
+        device: &Device,
+        run: &Path,
+    ) -> Result<Self, TrainError> {
         let mut training = Self::new(settings, device);
-        let folder = run.join("checkpoint");
-        let path = folder.join("state.json");
-        if !path.exists() {
+        training.set = set;
+        let checkpoint = Checkpoint::of(run);
+        let Some(folder) = checkpoint.recovered()? else {
             return Ok(training);
-        }
-        let text = fs::read(&path).map_err(|cause| file_error(&path, cause))?;
-        let state: State = serde_json::from_slice(&text).map_err(|e| broken(&folder, &e))?;
+        };
+        let state = read_state(folder)?;
         if state.settings != training.settings {
-            return Err(TrainError::OtherSettings { path: folder });
+            let path = folder.to_owned();
+            return Err(TrainError::OtherSettings { path });
+        }
+        if state.set.is_some() && state.set != set {
+            let path = folder.to_owned();
+            return Err(TrainError::OtherSet { path });
         }
         let record = ModuleRecord::load(folder.join("network.bpk"));
-        let record = record.map_err(|e: RecordError| broken(&folder, &e))?;
+        let record = record.map_err(|e: RecordError| broken(folder, &e))?;
         let network = training.network.clone().try_load_record(record);
-        training.network = network.map_err(|e| broken(&folder, &e))?;
+        training.network = network.map_err(|e| broken(folder, &e))?;
         let loaded = training.optimizer.load(folder.join("optimizer.bpk"));
-        training.optimizer = loaded.map_err(|e| broken(&folder, &e))?;
+        training.optimizer = loaded.map_err(|e| broken(folder, &e))?;
         training.step = state.step;
         Ok(training)
     }
@@ -195,6 +211,7 @@ impl Training {
         run: &Path,
         progress: &Progress,
     ) -> Result<(), TrainError> {
+        log::cut_back(run, self.step)?;
         let (mut sum, mut n) = (0.0, 0);
         let mut told = "train".to_owned();
         while self.step < self.settings.n_steps {
@@ -224,8 +241,9 @@ impl Training {
                     held_out: evaluate(&self.network(), held_out),
                 };
                 (sum, n) = (0.0, 0);
+                // A line without its checkpoint is cut back, one that is missing cannot be made again.
+                log::add(run, &line)?;
                 self.keep(run)?;
-                log(run, &line)?;
                 told = format!(
                     "loss {:.3}, folds {:.2} %",
                     line.loss, line.held_out.folds_pct
@@ -246,32 +264,20 @@ impl Training {
         Weights { header, parameters }
     }
 
-    /// Writes a checkpoint beside the last one and then puts it in its place.
     fn keep(&self, run: &Path) -> Result<(), TrainError> {
-        let [fresh, folder, old] =
-            ["checkpoint.new", "checkpoint", "checkpoint.old"].map(|name| run.join(name));
-        let failed = |cause| file_error(&fresh, cause);
-        fs::create_dir_all(&fresh).map_err(failed)?;
-        let record = self.network.clone().into_record();
-        record
-            .save(fresh.join("network.bpk"))
-            .map_err(|e| broken(&fresh, &e))?;
-        let kept = self.optimizer.save(fresh.join("optimizer.bpk"));
-        kept.map_err(|e| broken(&fresh, &e))?;
         let state = State {
             settings: self.settings.clone(),
             step: self.step,
+            set: self.set,
         };
-        let text = serde_json::to_vec_pretty(&state).map_err(|e| broken(&fresh, &e))?;
-        fs::write(fresh.join("state.json"), text).map_err(failed)?;
-        if folder.exists() {
-            fs::rename(&folder, &old).map_err(failed)?;
-        }
-        fs::rename(&fresh, &folder).map_err(failed)?;
-        if old.exists() {
-            fs::remove_dir_all(&old).map_err(failed)?;
-        }
-        Ok(())
+        Checkpoint::of(run).replace(&state, |folder| {
+            let record = self.network.clone().into_record();
+            record
+                .save(folder.join("network.bpk"))
+                .map_err(|e| broken(folder, &e))?;
+            let kept = self.optimizer.save(folder.join("optimizer.bpk"));
+            kept.map_err(|e| broken(folder, &e))
+        })
     }
 
     fn rate(&self) -> f64 {
@@ -279,27 +285,7 @@ impl Training {
     }
 }
 
-/// Adds a line to the log and draws all of it.
-fn log(run: &Path, line: &Line) -> Result<(), TrainError> {
-    let path = run.join("log.jsonl");
-    let open = OpenOptions::new().create(true).append(true).open(&path);
-    let write = |mut file: File| {
-        let text = serde_json::to_string(line).expect("a line is plain numbers");
-        writeln!(file, "{text}")
-    };
-    open.and_then(write)
-        .map_err(|cause| file_error(&path, cause))?;
-    draw_log(run)
-}
-
 pub(crate) fn file_error(path: &Path, cause: io::Error) -> TrainError {
     let path = path.to_owned();
     TrainError::File { path, cause }
-}
-
-fn broken(path: &Path, reason: &dyn std::fmt::Display) -> TrainError {
-    TrainError::Checkpoint {
-        path: path.to_owned(),
-        reason: reason.to_string(),
-    }
 }

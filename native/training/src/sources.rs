@@ -1,5 +1,6 @@
 //! What a set is made from: files below folders and in zip files, and seeds.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -13,7 +14,7 @@ use thiserror::Error;
 use crate::licence::Licences;
 use crate::set::Split;
 use crate::shapes::shape;
-use crate::zips::Zip;
+use crate::tree::Tree;
 
 /// Of a hundred files or seeds, how many are held back, with all their parts.
 const HELD_BACK_PCT: usize = 15;
@@ -67,20 +68,6 @@ pub enum SourceError {
     },
 }
 
-/// Files below one folder or in one zip file.
-pub struct Tree {
-    root: Root,
-    /// What its files are called from outside; empty for a single file.
-    name: String,
-    /// All files, by their path from the root with `/` between.
-    files: Vec<String>,
-}
-
-enum Root {
-    Folder(PathBuf),
-    Zip(Zip),
-}
-
 /// The seeds and the files of folders, zip files and meshes: seeds first, then files in the order of
 /// their paths. Files of unknown licence are under `licence`.
 ///
@@ -92,10 +79,11 @@ pub fn items(
     licence: Option<&str>,
 ) -> Result<Vec<Item>, SourceError> {
     let mut items = seeds(n_procedural, seed);
+    let mut beside = BTreeMap::new();
     for path in given {
-        let name = path.canonicalize().unwrap_or_else(|_| path.clone());
-        let name = name.file_name().unwrap_or_default();
-        add(path, &name.to_string_lossy(), licence, &mut items)?;
+        let name = name_of(path);
+        let said = licence_beside(path, &name, &mut beside);
+        add(path, &name, said.as_deref().or(licence), &mut items)?;
     }
     if items.is_empty() {
         let n_given = given.len();
@@ -110,6 +98,33 @@ pub fn items(
             Err(SourceError::Twice { name })
         }
     }
+}
+
+/// What a place is called; a link is called as it calls itself, which is what its folder has.
+fn name_of(path: &Path) -> String {
+    let whole = match path.file_name() {
+        Some(_) => None,
+        None => path.canonicalize().ok(),
+    };
+    let name = whole.as_deref().unwrap_or(path).file_name();
+    name.unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// What the folder of a mesh or zip file that is given by itself says of its licence; each folder is
+/// read once.
+fn licence_beside(
+    path: &Path,
+    name: &str,
+    read: &mut BTreeMap<PathBuf, Licences>,
+) -> Option<String> {
+    if path.is_dir() {
+        return None;
+    }
+    let folder = Tree::folder_of(path);
+    let licences = read
+        .entry(folder.to_owned())
+        .or_insert_with(|| Licences::of(&Tree::of_files_in(folder)));
+    licences.licence_of(name)
 }
 
 fn seeds(n: usize, first: u64) -> Vec<Item> {
@@ -169,18 +184,16 @@ fn add(
 fn add_tree(tree: Tree, licence: Option<&str>, items: &mut Vec<Item>) -> Result<(), SourceError> {
     let licences = Licences::of(&tree);
     let tree = Arc::new(tree);
-    for file in &tree.files {
+    for file in tree.files() {
         let name = tree.name_of(file);
-        if let (Root::Folder(root), true) = (&tree.root, is_zip(Path::new(file))) {
-            add(&root.join(file), &name, licence, items)?;
+        let said = licences.licence_of(file);
+        if let (Some(path), true) = (tree.path_of(file), is_zip(Path::new(file))) {
+            add(&path, &name, said.as_deref().or(licence), items)?;
         } else if Format::from_path(Path::new(file)).is_some() {
             let folder = Path::new(&name).parent().and_then(Path::file_name);
             items.push(Item {
                 category: folder.unwrap_or_default().to_string_lossy().into_owned(),
-                licence: match (licences.licence_of(file), licence) {
-                    (Some(said), _) => said,
-                    (None, given) => given.unwrap_or("unknown").to_owned(),
-                },
+                licence: said.unwrap_or_else(|| licence.unwrap_or("unknown").to_owned()),
                 split: split_of(file),
                 origin: Origin::File(tree.clone(), file.clone()),
                 name,
@@ -234,78 +247,87 @@ impl Item {
     }
 }
 
-impl Tree {
-    fn of_file(path: &Path, name: &str) -> Self {
-        Self {
-            root: Root::Folder(path.parent().unwrap_or(Path::new("")).to_owned()),
-            name: String::new(),
-            files: vec![name.to_owned()],
-        }
-    }
-
-    fn of_folder(root: &Path, name: &str) -> io::Result<Self> {
-        let mut files = Vec::new();
-        list(root, "", &mut files)?;
-        Ok(Self {
-            root: Root::Folder(root.to_owned()),
-            name: name.to_owned(),
-            files,
-        })
-    }
-
-    fn of_zip(path: &Path, name: &str) -> Result<Self, String> {
-        let zip = Zip::open(path)?;
-        Ok(Self {
-            files: zip.names().cloned().collect(),
-            root: Root::Zip(zip),
-            name: name.to_owned(),
-        })
-    }
-
-    /// What a file of it is called from outside.
-    fn name_of(&self, file: &str) -> String {
-        if self.name.is_empty() {
-            return file.to_owned();
-        }
-        format!("{}/{file}", self.name)
-    }
-
-    /// All files, by their path from the root with `/` between.
-    pub fn files(&self) -> &[String] {
-        &self.files
-    }
-
-    /// The bytes of a file.
-    ///
-    /// # Errors
-    /// Why they cannot be read, in words.
-    pub fn read(&self, file: &str) -> Result<Vec<u8>, String> {
-        match &self.root {
-            Root::Folder(root) => fs::read(root.join(file)).map_err(|e| e.to_string()),
-            Root::Zip(zip) => zip.read(file),
-        }
-    }
-}
-
-/// The files of a folder and its subfolders, in the order of their names; links to folders are not
-/// followed, they may lead back.
-fn list(folder: &Path, below: &str, files: &mut Vec<String>) -> io::Result<()> {
-    let mut entries: Vec<fs::DirEntry> = fs::read_dir(folder)?.collect::<io::Result<_>>()?;
-    entries.sort_by_key(fs::DirEntry::path);
-    for entry in entries {
-        let name = format!("{below}{}", entry.file_name().to_string_lossy());
-        if entry.file_type()?.is_dir() {
-            list(&entry.path(), &format!("{name}/"), files)?;
-        } else if entry.path().is_file() {
-            files.push(name);
-        }
-    }
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
+    use std::io::Write;
+
+    use rawzip::ZipArchiveWriter;
+
     use super::*;
+
+    /// A zip file of files as they are.
+    fn zip(files: &[(&str, &str)]) -> Result<Vec<u8>, rawzip::Error> {
+        let mut bytes = Vec::new();
+        let mut archive = ZipArchiveWriter::new(&mut bytes);
+        for (name, text) in files {
+            let (mut entry, config) = archive.new_file(*name).start()?;
+            let mut out = config.wrap(&mut entry);
+            out.write_all(text.as_bytes())?;
+            let (_, descriptor) = out.finish()?;
+            entry.finish(descriptor)?;
+        }
+        archive.finish()?;
+        Ok(bytes)
+    }
+
+    fn licences(given: &[PathBuf]) -> Vec<(String, String)> {
+        let items = items(given, (0, 0), Some("asked")).expect("there are meshes");
+        let said = items.into_iter().map(|item| (item.name, item.licence));
+        said.collect()
+    }
+
+    #[test]
+    fn the_licence_beside_a_mesh_or_zip_is_its_own_unless_the_zip_has_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let models = folder.path().join("models");
+        fs::create_dir(&models).unwrap();
+        let put = |name: &str, bytes: &[u8]| fs::write(models.join(name), bytes).unwrap();
+        put("cat.obj", b"");
+        put("dog.obj", b"");
+        put("plain.zip", &zip(&[("fish.obj", "")]).unwrap());
+        let own = zip(&[("fish.obj", ""), ("README", "CC0")]).unwrap();
+        put("own.zip", &own);
+        put("broken.zip", b"PK nonsense");
+        put("LICENSE", b"The MIT License");
+        put("table.csv", b"file,licence\ndog.obj,by the table\n");
+        let wanted = [
+            ("broken.zip", "MIT"),
+            ("cat.obj", "MIT"),
+            ("dog.obj", "by the table"),
+            ("own.zip/fish.obj", "CC0-1.0"),
+            ("plain.zip/fish.obj", "MIT"),
+        ];
+        let below = wanted.map(|(name, licence)| (format!("models/{name}"), licence.to_owned()));
+        assert_eq!(licences(std::slice::from_ref(&models)), below);
+        let names = ["broken.zip", "cat.obj", "dog.obj", "own.zip", "plain.zip"];
+        let each = wanted.map(|(name, licence)| (name.to_owned(), licence.to_owned()));
+        assert_eq!(licences(&names.map(|name| models.join(name))), each);
+
+        fs::remove_file(models.join("LICENSE")).unwrap();
+        let asked = [("cat.obj".to_owned(), "asked".to_owned())];
+        assert_eq!(licences(&[models.join("cat.obj")]), asked);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_is_called_as_it_calls_itself() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        fs::create_dir_all(path("kept/models")).unwrap();
+        fs::write(
+            path("kept/MD5-1234"),
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+        )
+        .unwrap();
+        for link in ["cat.obj", "kept/models/dog.obj"] {
+            std::os::unix::fs::symlink(path("kept/MD5-1234"), path(link)).unwrap();
+            let items = items(&[path(link)], (0, 0), None).unwrap();
+            assert!(link.ends_with(&items[0].name), "{}", items[0].name);
+            assert!(matches!(items[0].read(), Ok(Found::File(_))));
+        }
+        let dots = items(&[path("kept/models/..")], (0, 0), None).unwrap();
+        assert_eq!(dots[0].name, "kept/models/dog.obj");
+    }
 
     #[test]
     fn a_file_stays_on_its_side() {

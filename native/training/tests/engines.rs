@@ -173,7 +173,8 @@ fn check_change(engines: [Engine; 2]) {
     let mut begun = Training::new(settings.clone(), &first);
     let cut = begun.run(both, changed.path(), &Progress::new(token.clone(), &stop));
     assert!(matches!(cut, Err(TrainError::Cancelled(_))), "{cut:?}");
-    let mut ended = Training::resumed(settings, &second, changed.path()).expect("it can be read");
+    let mut ended =
+        Training::resumed(settings, None, &second, changed.path()).expect("it can be read");
     assert_eq!(ended.step(), 5);
     ended
         .run(both, changed.path(), &Progress::none())

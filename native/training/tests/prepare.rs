@@ -262,6 +262,21 @@ fn targets_are_refused_where_none_could_be_made() {
 }
 
 #[test]
+fn more_made_shapes_than_can_be_are_refused() {
+    let folder = TempDir::new().unwrap();
+    let output = folder.path().join("a.set");
+    for n_procedural in [1_000_001, 2_000_000_000_000_000_000, usize::MAX] {
+        let many = Settings {
+            n_procedural,
+            ..settings()
+        };
+        let error = prepare(&[], &many, &output, &Progress::none()).unwrap_err();
+        assert!(error.to_string().contains("at most 1000000"), "{error}");
+    }
+    assert!(!output.exists());
+}
+
+#[test]
 fn a_run_that_makes_targets_can_be_cancelled() {
     let folder = TempDir::new().unwrap();
     let output = folder.path().join("a.set");

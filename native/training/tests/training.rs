@@ -1,11 +1,12 @@
 //! The network can learn, and a run that was cut goes on as if it had not been.
 
 use std::fs;
+use std::path::Path;
 
 use burn::tensor::{Device, Tensor, TensorData};
 use glam::DVec3;
 use orbflow_geometry::mesh::TriangleMesh;
-use orbflow_geometry::progress::Progress;
+use orbflow_geometry::progress::{CancelToken, Progress};
 use orbflow_network::net::Sizes;
 use orbflow_network::weights::Weights;
 use orbflow_training::evaluate::evaluate;
@@ -90,6 +91,15 @@ fn any_number_of_threads_trains_to_the_same_bits() {
     assert_eq!(after(1), after(3));
 }
 
+/// Runs until its sixth step: what came after the checkpoint at four is lost.
+fn cut_in_its_sixth_step(settings: &Settings, both: [&[Sample]; 2], run: &Path) {
+    let mut first = Training::new(settings.clone(), &Device::flex());
+    let stop = |_: &str, share: f64| assert!(share < 0.4, "cut");
+    let progress = Progress::new(CancelToken::new(), &stop);
+    let cut_off = std::panic::AssertUnwindSafe(|| first.run(both, run, &progress));
+    assert!(std::panic::catch_unwind(cut_off).is_err());
+}
+
 #[test]
 fn a_resumed_run_equals_an_uninterrupted_one() {
     let (settings, quiet) = (small(), Progress::none());
@@ -98,20 +108,18 @@ fn a_resumed_run_equals_an_uninterrupted_one() {
     let both = [&samples[..2], &samples[2..]];
     let mut straight = Training::new(settings.clone(), &Device::flex());
     straight.run(both, whole.path(), &quiet).unwrap();
+    let log = |folder: &tempfile::TempDir| fs::read_to_string(folder.path().join("log.jsonl"));
+    let logged = log(&whole).unwrap();
 
-    // The run is cut in its sixth step: what came after the checkpoint at four is lost.
-    let mut first = Training::new(settings.clone(), &Device::flex());
-    let stop = |_: &str, share: f64| assert!(share < 0.4, "cut");
-    let token = orbflow_geometry::progress::CancelToken::new();
-    let progress = Progress::new(token, &stop);
-    let cut_off = std::panic::AssertUnwindSafe(|| first.run(both, cut.path(), &progress));
-    assert!(std::panic::catch_unwind(cut_off).is_err());
-    let mut second = Training::resumed(settings, &Device::flex(), cut.path()).unwrap();
+    cut_in_its_sixth_step(&settings, both, cut.path());
+    // A kill while the checkpoint at four was replaced, and one while the line of step eight was logged.
+    let path = |name: &str| cut.path().join(name);
+    fs::rename(path("checkpoint"), path("checkpoint.old")).unwrap();
+    fs::write(path("log.jsonl"), &logged[..logged.len() - 9]).unwrap();
+    let mut second = Training::resumed(settings, None, &Device::flex(), cut.path()).unwrap();
     assert_eq!(second.step(), 4);
     second.run(both, cut.path(), &quiet).unwrap();
-
-    let log = |folder: &tempfile::TempDir| fs::read_to_string(folder.path().join("log.jsonl"));
-    assert_eq!(log(&whole).unwrap(), log(&cut).unwrap());
+    assert_eq!(logged, log(&cut).unwrap());
     assert_eq!(straight.weights(""), second.weights(""));
 }
 
@@ -127,10 +135,28 @@ fn other_settings_do_not_resume() {
         rate: 1e-3,
         ..settings
     };
-    let error = Training::resumed(other, &Device::flex(), folder.path())
+    let error = Training::resumed(other, None, &Device::flex(), folder.path())
         .err()
         .unwrap();
     assert!(error.to_string().contains("other settings"), "{error}");
+}
+
+#[test]
+fn another_set_does_not_resume_but_a_checkpoint_that_names_none_does() {
+    let (settings, folder) = (small(), tempfile::tempdir().unwrap());
+    let samples = samples(3, &settings.sizes.levels);
+    let both = [&samples[..2], &samples[2..]];
+    let resumed =
+        |set: Option<u64>| Training::resumed(settings.clone(), set, &Device::flex(), folder.path());
+    cut_in_its_sixth_step(&settings, both, folder.path());
+    let mut unnamed = resumed(Some(7)).unwrap();
+    assert_eq!(unnamed.step(), 4);
+    unnamed.run(both, folder.path(), &Progress::none()).unwrap();
+    assert_eq!(resumed(Some(7)).unwrap().step(), 12);
+    for other in [Some(8), None] {
+        let error = resumed(other).err().unwrap();
+        assert!(error.to_string().contains("another set"), "{error}");
+    }
 }
 
 #[test]

@@ -211,8 +211,8 @@ pub fn thinned<'a>(shapes: &[Asked<'a>], n: usize) -> Vec<Asked<'a>> {
 
 /// Whether the `i`-th of `total` is among `n` that are taken evenly: where their number grows by one.
 fn is_one_of(i: usize, total: usize, n: usize) -> bool {
-    let most = total.max(n).max(1);
-    (i + 1) * n / most > i * n / most
+    let (n, total) = (n.min(total), total.max(1));
+    (i + 1) * n / total > i * n / total
 }
 
 impl SideReport {
@@ -340,7 +340,15 @@ mod tests {
 
     #[test]
     fn shapes_are_taken_evenly() {
-        for (total, most) in [(100, 0), (100, 1), (100, 10), (7, 3), (7, 10), (0, 4)] {
+        for (total, most) in [
+            (100, 0),
+            (100, 1),
+            (100, 10),
+            (7, 3),
+            (7, 10),
+            (0, 4),
+            (7, usize::MAX),
+        ] {
             let n = (0..total).filter(|&i| is_one_of(i, total, most)).count();
             assert_eq!(n, most.min(total));
         }

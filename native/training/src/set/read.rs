@@ -27,6 +27,7 @@ pub struct Set {
     sources: Vec<Placed>,
     /// Where the last whole block ends.
     end: u64,
+    sum: u64,
 }
 
 /// A source, and where its parts begin.
@@ -134,6 +135,7 @@ impl Set {
             head,
             sources,
             end,
+            sum: fnv(&reading.sums),
         })
     }
 
@@ -145,6 +147,12 @@ impl Set {
     /// What it was asked for.
     pub fn head(&self) -> &Head {
         &self.head
+    }
+
+    /// FNV-1a over the sums of its head and its entries, which hold those of the parts: another set has
+    /// another, and so has the same one when it has grown.
+    pub fn sum(&self) -> u64 {
+        self.sum
     }
 
     /// Its sources, in order.
@@ -238,6 +246,8 @@ struct Reading {
     file: File,
     length: u64,
     at: u64,
+    /// The sums of the texts so far.
+    sums: Vec<u8>,
 }
 
 impl Reading {
@@ -249,6 +259,7 @@ impl Reading {
                 file,
                 length: known.len(),
                 at: 0,
+                sums: Vec::new(),
             }),
             Err(cause) => Err(SetError::Read {
                 path: path.to_owned(),
@@ -328,11 +339,12 @@ impl Reading {
         self.bytes(self.at, length as usize)
     }
 
-    fn json<T: DeserializeOwned>(&self, text: &[u8], wanted: u64) -> Result<T, SetError> {
+    fn json<T: DeserializeOwned>(&mut self, text: &[u8], wanted: u64) -> Result<T, SetError> {
         let found = fnv(text);
         if found != wanted {
             return Err(self.damaged(format!("the sum is {found:016x}, but was {wanted:016x}")));
         }
+        self.sums.extend(found.to_le_bytes());
         serde_json::from_slice(text).map_err(|error| self.damaged(error.to_string()))
     }
 

@@ -117,6 +117,21 @@ fn what_is_written_is_read() {
 }
 
 #[test]
+fn the_sum_is_that_of_the_head_and_all_sources() {
+    let (_folder, path) = set();
+    let sum = |path: &Path| Set::open(path).unwrap().sum();
+    let wanted = sum(&path);
+    let later = Head { seed: 1, ..head() };
+    for (head, second, is_same) in [(head(), 2, true), (later, 2, false), (head(), 3, false)] {
+        let (_folder, path) = written(&head, [some(1), some(second)]);
+        assert_eq!(sum(&path) == wanted, is_same);
+    }
+    let bytes = fs::read(&path).unwrap();
+    fs::write(&path, &bytes[..bytes.len() - 1]).unwrap();
+    assert_ne!(sum(&path), wanted);
+}
+
+#[test]
 fn a_set_cut_anywhere_goes_on_to_the_same_bytes() {
     let (folder, whole) = set();
     let whole = fs::read(whole).unwrap();
