@@ -39,10 +39,15 @@ pub fn run(command: &Command) -> Result<(), Error> {
 }
 
 fn remesh(arguments: &Remesh, interrupt: &Interrupt) -> Result<(), Error> {
-    let Remesh { files, wanted, run } = arguments;
+    let Remesh {
+        files,
+        wanted,
+        run,
+        work,
+    } = arguments;
     let mut job = Rebuilding::begin((files, wanted), interrupt)?;
     let predictor = run.build()?;
-    let settings = wanted.settings(run.work, files);
+    let settings = wanted.settings(*work, files);
     let remeshed = job.remesh(&settings, predictor.as_ref())?;
     job.finish(remeshed)
 }
@@ -169,6 +174,7 @@ fn embed(arguments: &Embed, interrupt: &Interrupt) -> Result<(), Error> {
         input,
         report,
         run,
+        threads,
         sphere,
         ..
     } = arguments;
@@ -178,7 +184,7 @@ fn embed(arguments: &Embed, interrupt: &Interrupt) -> Result<(), Error> {
     let mut outputs = Outputs::new([Some(report), sphere.as_ref()].into_iter().flatten())?;
     let predictor = run.build()?;
     let embedded = with_bar(token, |progress| {
-        pipeline::embed(&file.mesh, run.work.threads, predictor.as_ref(), progress)
+        pipeline::embed(&file.mesh, threads.n, predictor.as_ref(), progress)
     });
     let embedded = embedded.map_err(|cause| Error::pipeline(place, cause))?;
     tell(place, &embedded.report.clean);
