@@ -364,12 +364,13 @@ fn check_different<'a>(
     verb: &str,
     places: impl Iterator<Item = &'a Place>,
 ) -> Result<(), clap::Error> {
-    let mut seen: Vec<&Place> = Vec::new();
+    let mut seen: Vec<Place> = Vec::new();
     for place in places {
-        if seen.contains(&place) {
+        let resolved = place.resolved();
+        if seen.contains(&resolved) {
             return Err(wrong(format!("{place} would be {verb} twice")));
         }
-        seen.push(place);
+        seen.push(resolved);
     }
     Ok(())
 }

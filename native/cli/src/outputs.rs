@@ -98,11 +98,10 @@ impl Outputs {
 
 impl Waiting {
     fn room(place: &Place) -> io::Result<Self> {
-        let Some(path) = place.path() else {
+        // A link stays a link: what it points to is replaced.
+        let Place::File(path) = place.resolved() else {
             return Ok(Self::Memory(Vec::new()));
         };
-        // A link stays a link: what it points to is replaced.
-        let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let known = fs::metadata(&path).ok();
         match &known {
             Some(known) if known.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),

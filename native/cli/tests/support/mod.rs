@@ -2,6 +2,7 @@
 #![allow(dead_code)] // Every test file uses a part of it.
 
 use std::collections::HashMap;
+use std::ffi::OsStr;
 use std::fs;
 use std::io::Write;
 use std::process::{Child, Command, Stdio};
@@ -33,6 +34,12 @@ impl Folder {
     pub fn path(&self, name: &str) -> String {
         let path = self.0.path().join(name);
         path.to_str().expect("the path is text").to_owned()
+    }
+
+    /// Its own name.
+    pub fn name(&self) -> &str {
+        let name = self.0.path().file_name().and_then(OsStr::to_str);
+        name.expect("the name is text")
     }
 
     pub fn write(&self, name: &str, text: &str) -> String {
