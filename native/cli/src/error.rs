@@ -15,7 +15,7 @@ use thiserror::Error;
 use crate::interrupt::CANCELLED;
 use crate::place::Place;
 
-/// Why the program ends without doing what was asked; nothing was written.
+/// Why the program ends without doing what was asked.
 #[derive(Debug, Error)]
 pub enum Error {
     /// The input cannot be opened or its bytes not fetched.

@@ -54,3 +54,30 @@ fn refuses_twice(arguments: &[&str]) {
         refused.err
     );
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn no_file_appears_where_a_device_is_full() {
+    let folder = Folder::new();
+    let input = folder.write("ball.obj", &ball(""));
+    let report = folder.path("x.json");
+    let sphere = ["--sphere", "/dev/full", "--output-format", "obj"];
+    let failed = run(&[&["embed", &input, "--report", &report][..], &sphere].concat());
+    assert_eq!(failed.code, 3);
+    let words = "cannot write /dev/full";
+    assert!(failed.err.contains(words), "{}", failed.err);
+    assert_eq!(folder.names(), ["ball.obj"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn no_file_appears_where_nobody_reads_standard_output() {
+    let folder = Folder::new();
+    let input = folder.write("ball.obj", &ball(""));
+    let output = folder.path("out.obj");
+    let failed =
+        support::run_unread(&["remesh", &input, &output, "--report", "-", "--faces", "200"]);
+    assert_eq!(failed.code, 3);
+    assert!(failed.err.contains("cannot write -"), "{}", failed.err);
+    assert_eq!(folder.names(), ["ball.obj"]);
+}

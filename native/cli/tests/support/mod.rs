@@ -113,6 +113,13 @@ pub fn run_with_input(arguments: &[&str], input: &[u8]) -> Ended {
     ended
 }
 
+/// Runs the program with a standard output that nobody reads.
+pub fn run_unread(arguments: &[&str]) -> Ended {
+    let mut child = start(arguments);
+    drop(child.stdout.take());
+    wait(child)
+}
+
 fn start(arguments: &[&str]) -> Child {
     Command::new(env!("CARGO_BIN_EXE_orbflow"))
         .args(arguments)
