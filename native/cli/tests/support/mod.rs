@@ -7,7 +7,7 @@ use std::fs;
 use std::io::Write;
 use std::process::{Child, Command, Stdio};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use orbflow_geometry::elementary::sin;
 use tempfile::TempDir;
@@ -168,6 +168,25 @@ pub fn interrupt_while_reading() {
     interrupt(&child);
     let ended = wait(child);
     assert_eq!((ended.code, ended.out.len()), (130, 0));
+}
+
+/// Sends Ctrl-C to a program that waits for what a pipe will give it: `open` opens the pipe and
+/// waits for the program to do so.
+#[cfg(unix)]
+pub fn interrupt_while_opened(arguments: &[&str], open: impl FnOnce() -> fs::File) -> Ended {
+    let mut child = start(arguments);
+    let pipe = open();
+    interrupt(&child);
+    let patience = Instant::now() + Duration::from_secs(10);
+    while child.try_wait().expect("it was started").is_none() {
+        if Instant::now() > patience {
+            child.kill().expect("it still runs");
+            panic!("Ctrl-C does not end {arguments:?}");
+        }
+        thread::sleep(Duration::from_millis(5));
+    }
+    drop(pipe);
+    wait(child)
 }
 
 #[cfg(unix)]
