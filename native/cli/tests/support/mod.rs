@@ -144,17 +144,24 @@ fn wait(child: Child) -> Ended {
 pub fn interrupt_while_working() {
     let folder = Folder::new();
     let input = folder.write("large.obj", &grid(150, ""));
-    let child = start(&["embed", &input, "--report", &folder.path("report.json")]);
-    while folder.names().len() < 2 {
-        thread::sleep(Duration::from_millis(5));
-    }
-    interrupt(&child);
-    let ended = wait(child);
+    let embed = ["embed", &input, "--report", &folder.path("report.json")];
+    let ended = interrupt_once(&embed, || folder.names().len() > 1);
     assert_eq!(
         (ended.code, ended.err.as_str()),
         (130, "orbflow: cancelled, nothing was written\n")
     );
     assert_eq!(folder.names(), ["large.obj"]);
+}
+
+/// Sends Ctrl-C to the program once `is_time`.
+#[cfg(unix)]
+pub fn interrupt_once(arguments: &[&str], is_time: impl Fn() -> bool) -> Ended {
+    let child = start(arguments);
+    while !is_time() {
+        thread::sleep(Duration::from_millis(5));
+    }
+    interrupt(&child);
+    wait(child)
 }
 
 /// Sends Ctrl-C to a program that waits for the rest of its input.
