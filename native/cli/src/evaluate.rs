@@ -86,8 +86,6 @@ pub fn evaluate(arguments: &Evaluate, interrupt: &Interrupt) -> Result<(), Error
 }
 
 fn measure(arguments: &Evaluate, interrupt: &Interrupt) -> Result<(), Error> {
-    let token = interrupt.start_work();
-    let mut outputs = Outputs::new([&arguments.report])?;
     let weights = match &arguments.weights {
         Some(path) => read_weights(path)?,
         None => Weights::shipped(),
@@ -118,6 +116,8 @@ fn measure(arguments: &Evaluate, interrupt: &Interrupt) -> Result<(), Error> {
         return Err(Error::NoShapes);
     }
     let thesis = arguments.thesis_asked((&set, &others))?;
+    let token = interrupt.start_work();
+    let mut outputs = Outputs::new([&arguments.report])?;
     let report = with_bar(token, |progress| {
         let (subject, from) = match thesis {
             Some(settings) => {
