@@ -67,6 +67,8 @@ pub struct Remesh {
     pub wanted: Wanted,
     #[command(flatten)]
     pub run: Run,
+    #[command(flatten)]
+    pub work: Work,
 }
 
 #[derive(Args, Debug)]
@@ -142,6 +144,8 @@ pub struct Embed {
     pub report: Place,
     #[command(flatten)]
     pub run: Run,
+    #[command(flatten)]
+    pub threads: Threads,
     /// Write the triangles of IN with their vertices on the unit sphere
     #[arg(long, value_name = "OUT")]
     pub sphere: Option<Place>,
@@ -208,19 +212,24 @@ pub struct Run {
     /// The weights of the network, as `orbflow train` writes them [default: the program's own]
     #[arg(long, value_name = "FILE")]
     pub weights: Option<PathBuf>,
-    #[command(flatten)]
-    pub work: Work,
 }
 
 /// What does not change the kind of work.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct Work {
-    /// How many threads to use, 0 for all; the result is the same
-    #[arg(long, value_name = "T", default_value_t = 0)]
-    pub threads: usize,
+    #[command(flatten)]
+    pub threads: Threads,
     /// Where random choices start; equal seeds give equal bytes
     #[arg(long, value_name = "S", default_value_t = 0)]
     pub seed: u64,
+}
+
+/// How many threads do the work.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct Threads {
+    /// How many threads to use, 0 for all; the result is the same
+    #[arg(long = "threads", value_name = "T", default_value_t = 0)]
+    pub n: usize,
 }
 
 /// The predictors by name.
@@ -261,7 +270,7 @@ impl Wanted {
             sharp_angle: self.sharp_angle,
             mirror: self.mirror,
             seed: work.seed,
-            threads: work.threads,
+            threads: work.threads.n,
             score: files.report.as_ref().map(|_| score::Settings::default()),
             ..Settings::default()
         }
@@ -355,12 +364,13 @@ fn check_different<'a>(
     verb: &str,
     places: impl Iterator<Item = &'a Place>,
 ) -> Result<(), clap::Error> {
-    let mut seen: Vec<&Place> = Vec::new();
+    let mut seen: Vec<Place> = Vec::new();
     for place in places {
-        if seen.contains(&place) {
+        let resolved = place.resolved();
+        if seen.contains(&resolved) {
             return Err(wrong(format!("{place} would be {verb} twice")));
         }
-        seen.push(place);
+        seen.push(resolved);
     }
     Ok(())
 }

@@ -39,10 +39,15 @@ pub fn run(command: &Command) -> Result<(), Error> {
 }
 
 fn remesh(arguments: &Remesh, interrupt: &Interrupt) -> Result<(), Error> {
-    let Remesh { files, wanted, run } = arguments;
-    let mut job = Rebuilding::begin((files, wanted), interrupt)?;
+    let Remesh {
+        files,
+        wanted,
+        run,
+        work,
+    } = arguments;
     let predictor = run.build()?;
-    let settings = wanted.settings(run.work, files);
+    let mut job = Rebuilding::begin((files, wanted), interrupt)?;
+    let settings = wanted.settings(*work, files);
     let remeshed = job.remesh(&settings, predictor.as_ref())?;
     job.finish(remeshed)
 }
@@ -55,8 +60,8 @@ fn predict(arguments: &Predict, interrupt: &Interrupt) -> Result<(), Error> {
         weights,
         work,
     } = arguments;
-    let mut job = Rebuilding::begin((files, wanted), interrupt)?;
     let predictor = network(weights.as_deref())?;
+    let mut job = Rebuilding::begin((files, wanted), interrupt)?;
     let settings = wanted.settings(*work, files);
     let remeshed = job.remesh(&settings, &predictor)?;
     match beyond_repair(&files.files.input.input, &remeshed.report) {
@@ -93,12 +98,15 @@ struct Rebuilding<'a> {
 }
 
 impl<'a> Rebuilding<'a> {
+    /// Reads what is to be rebuilt and makes room for the result; whatever else is read was read
+    /// before, because from here on Ctrl-C no longer ends the program.
     fn begin(
         (files, wanted): (&'a Rebuilt, &Wanted),
         interrupt: &'a Interrupt,
     ) -> Result<Self, Error> {
         let InAndOut { input, output, .. } = &files.files;
         let file = read(&input.input, input.input_format)?;
+        let density = wanted.density.as_deref().map(numbers).transpose()?;
         let token = interrupt.start_work();
         let places = [Some(output), files.report.as_ref(), files.sphere.as_ref()];
         let outputs = Outputs::new(places.into_iter().flatten())?;
@@ -106,7 +114,7 @@ impl<'a> Rebuilding<'a> {
             files,
             token,
             file,
-            density: wanted.density.as_deref().map(numbers).transpose()?,
+            density,
             outputs,
         })
     }
@@ -169,16 +177,17 @@ fn embed(arguments: &Embed, interrupt: &Interrupt) -> Result<(), Error> {
         input,
         report,
         run,
+        threads,
         sphere,
         ..
     } = arguments;
     let place = &input.input;
+    let predictor = run.build()?;
     let file = read(place, input.input_format)?;
     let token = interrupt.start_work();
     let mut outputs = Outputs::new([Some(report), sphere.as_ref()].into_iter().flatten())?;
-    let predictor = run.build()?;
     let embedded = with_bar(token, |progress| {
-        pipeline::embed(&file.mesh, run.work.threads, predictor.as_ref(), progress)
+        pipeline::embed(&file.mesh, threads.n, predictor.as_ref(), progress)
     });
     let embedded = embedded.map_err(|cause| Error::pipeline(place, cause))?;
     tell(place, &embedded.report.clean);

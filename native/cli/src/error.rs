@@ -15,7 +15,7 @@ use thiserror::Error;
 use crate::interrupt::CANCELLED;
 use crate::place::Place;
 
-/// Why the program ends without doing what was asked; nothing was written.
+/// Why the program ends without doing what was asked.
 #[derive(Debug, Error)]
 pub enum Error {
     /// The input cannot be opened or its bytes not fetched.
@@ -96,6 +96,10 @@ pub enum Error {
     /// The user asked to stop.
     #[error("cancelled, nothing was written")]
     Cancelled(#[from] Cancelled),
+    /// The user asked to stop an evaluation, which writes meshes as it makes them.
+    #[cfg(feature = "train")]
+    #[error("cancelled, no report was written; meshes made by then are in {}", .0.display())]
+    CancelledAmongMeshes(PathBuf),
 }
 
 impl Error {
@@ -104,9 +108,12 @@ impl Error {
         ExitCode::from(if self.is_cancelled() { CANCELLED } else { 3 })
     }
 
-    fn is_cancelled(&self) -> bool {
+    /// Whether the user asked to stop.
+    pub fn is_cancelled(&self) -> bool {
         match self {
             Self::Cancelled(_) => true,
+            #[cfg(feature = "train")]
+            Self::CancelledAmongMeshes(_) => true,
             #[cfg(feature = "train")]
             Self::Train(error) => error.is_cancelled(),
             #[cfg(feature = "train")]

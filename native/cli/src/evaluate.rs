@@ -79,8 +79,13 @@ pub enum Baseline {
 
 /// Measures the network, the solver and the radial projection beside each other.
 pub fn evaluate(arguments: &Evaluate, interrupt: &Interrupt) -> Result<(), Error> {
-    let token = interrupt.start_work();
-    let mut outputs = Outputs::new([&arguments.report])?;
+    measure(arguments, interrupt).map_err(|error| match &arguments.meshes {
+        Some(folder) if error.is_cancelled() => Error::CancelledAmongMeshes(folder.clone()),
+        _ => error,
+    })
+}
+
+fn measure(arguments: &Evaluate, interrupt: &Interrupt) -> Result<(), Error> {
     let weights = match &arguments.weights {
         Some(path) => read_weights(path)?,
         None => Weights::shipped(),
@@ -111,6 +116,8 @@ pub fn evaluate(arguments: &Evaluate, interrupt: &Interrupt) -> Result<(), Error
         return Err(Error::NoShapes);
     }
     let thesis = arguments.thesis_asked((&set, &others))?;
+    let token = interrupt.start_work();
+    let mut outputs = Outputs::new([&arguments.report])?;
     let report = with_bar(token, |progress| {
         let (subject, from) = match thesis {
             Some(settings) => {
@@ -156,7 +163,8 @@ fn with_thesis(
     Ok(subject.with_thesis((set, &seen), settings, progress)?)
 }
 
-/// Writes as OBJ what there is to see of the shapes that were not trained on.
+/// Writes as OBJ what there is to see of the shapes that were not trained on, each as it is made:
+/// together they may be more files than a program may hold open.
 fn write_meshes(
     folder: &Path,
     subject: &Subject,

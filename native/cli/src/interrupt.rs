@@ -32,7 +32,8 @@ impl Interrupt {
         Ok(interrupt)
     }
 
-    /// From here on the job is stopped and cleans up, instead of the program.
+    /// From here on the job is stopped and cleans up, instead of the program; everything that is
+    /// read must have been.
     pub fn start_work(&self) -> &CancelToken {
         self.is_working.store(true, Ordering::SeqCst);
         &self.token

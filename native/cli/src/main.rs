@@ -1,7 +1,9 @@
 //! The program `orbflow`: the core's verbs on mesh files.
 //!
 //! Exit codes: 0 done, 2 wrong usage, 3 this input cannot be done, 130 stopped by Ctrl-C. Files
-//! are written whole or not at all, all of a run's files together, after all work is done.
+//! are written whole or not at all, all of a run's files together, after all work is done and after
+//! what goes to streams and devices. On the way are written only the set, what training goes on
+//! from, and the meshes of an evaluation.
 
 mod arguments;
 mod bar;

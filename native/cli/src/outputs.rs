@@ -1,4 +1,4 @@
-//! Files that appear whole, all together, or not at all.
+//! Files that appear whole, all together, or not at all, once streams have taken their share.
 
 use std::fs;
 use std::io::{self, Write};
@@ -72,10 +72,15 @@ impl Outputs {
     }
 
     /// Lets everything that waits appear, unless the user asked to stop.
-    pub fn publish(self, token: &CancelToken) -> Result<(), Error> {
+    ///
+    /// Streams and devices come first: they fail more readily than a change of a file's name, and
+    /// then no file has appeared.
+    pub fn publish(mut self, token: &CancelToken) -> Result<(), Error> {
         if token.is_cancelled() {
             return Err(Error::Cancelled(orbflow_geometry::progress::Cancelled));
         }
+        self.pending
+            .sort_by_key(|pending| matches!(pending.waiting, Waiting::Beside(..)));
         for Pending { place, waiting } in self.pending {
             waiting
                 .publish(&place)
@@ -98,11 +103,10 @@ impl Outputs {
 
 impl Waiting {
     fn room(place: &Place) -> io::Result<Self> {
-        let Some(path) = place.path() else {
+        // A link stays a link: what it points to is replaced.
+        let Place::File(path) = place.resolved() else {
             return Ok(Self::Memory(Vec::new()));
         };
-        // A link stays a link: what it points to is replaced.
-        let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let known = fs::metadata(&path).ok();
         match &known {
             Some(known) if known.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),

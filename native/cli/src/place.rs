@@ -2,6 +2,7 @@
 
 use std::ffi::OsString;
 use std::fmt;
+use std::fs;
 use std::path::{Path, PathBuf};
 
 /// A file, or the standard stream that `-` stands for.
@@ -20,6 +21,22 @@ impl Place {
             Self::Standard => None,
             Self::File(path) => Some(path),
         }
+    }
+
+    /// The same place by the one name that all its names lead to, where its folder exists: links
+    /// are followed, for what they point to is what is written.
+    pub fn resolved(&self) -> Self {
+        let Self::File(path) = self else {
+            return Self::Standard;
+        };
+        let in_folder = || {
+            let folder = path.parent()?;
+            let folder = Some(folder).filter(|folder| !folder.as_os_str().is_empty());
+            let folder = fs::canonicalize(folder.unwrap_or(Path::new("."))).ok()?;
+            Some(folder.join(path.file_name()?))
+        };
+        let resolved = fs::canonicalize(path).ok().or_else(in_folder);
+        Self::File(resolved.unwrap_or_else(|| path.clone()))
     }
 }
 

@@ -56,8 +56,6 @@ pub enum Targets {
 
 /// Makes the set, or what is missing of it.
 pub fn prepare(arguments: &Prepare, interrupt: &Interrupt) -> Result<(), Error> {
-    let token = interrupt.start_work();
-    let mut outputs = Outputs::new(&arguments.manifest)?;
     let settings = Settings {
         n_faces: arguments.faces,
         n_procedural: arguments.procedural,
@@ -68,6 +66,8 @@ pub fn prepare(arguments: &Prepare, interrupt: &Interrupt) -> Result<(), Error> 
             Some(Targets::Chamfer) => Some(thesis_settings(arguments.thesis.as_deref())?.chamfer),
         },
     };
+    let token = interrupt.start_work();
+    let mut outputs = Outputs::new(&arguments.manifest)?;
     let (places, output) = (&arguments.places, &arguments.output);
     let set = with_bar(token, |progress| {
         prepare_set(places, &settings, output, progress)

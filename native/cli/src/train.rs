@@ -100,7 +100,6 @@ struct Shapes<'a> {
 
 /// Trains until the steps are done or the user stops; the next call goes on from there.
 pub fn train(arguments: &Train, interrupt: &Interrupt) -> Result<(), Error> {
-    let token = interrupt.start_work();
     let device = Engine::from(arguments.device).open()?;
     if let Some(name) = name_of(&device) {
         eprintln!("training on {name}");
@@ -116,6 +115,7 @@ pub fn train(arguments: &Train, interrupt: &Interrupt) -> Result<(), Error> {
         let (n, n_all) = (manifest.sources.len(), manifest.asked.n_sources);
         eprintln!("the set is not complete: {n} of {n_all} sources are in it");
     }
+    let token = interrupt.start_work();
     let levels = &settings.sizes.levels;
     let [training, held_out] = with_bar(token, |progress| load(&set, levels, progress))?;
     let run = &arguments.output;

@@ -139,6 +139,13 @@ fn embed_writes_a_report_and_the_sphere() {
 }
 
 #[test]
+fn embed_chooses_nothing_at_random() {
+    let refused = run(&["embed", "-", "--report", "-", "--seed", "1"]);
+    assert_eq!(refused.code, 2);
+    assert!(refused.err.contains("'--seed'"), "{}", refused.err);
+}
+
+#[test]
 fn score_prints_figures_or_writes_them() {
     let folder = Folder::new();
     let input = folder.write("ball.obj", &ball(""));

@@ -154,6 +154,23 @@ fn the_programs_own_weights_are_measured_and_what_they_were_given_is_there_to_se
     }
 }
 
+#[cfg(unix)]
+#[test]
+fn a_cancelled_evaluation_says_that_meshes_were_written() {
+    let folder = Folder::new();
+    let set = prepared(&folder);
+    let [report, meshes] = ["evaluation.json", "meshes"].map(|name| folder.path(name));
+    let evaluate = ["evaluate", &set, "--report", &report, "--meshes", &meshes];
+    let has_mesh = |entry: fs::DirEntry| entry.path().extension().is_some_and(|e| e == "obj");
+    let ended = support::interrupt_once(&evaluate, || {
+        fs::read_dir(&meshes).is_ok_and(|names| names.flatten().any(has_mesh))
+    });
+    let words = format!("meshes made by then are in {meshes}");
+    assert_eq!(ended.code, 130);
+    assert!(ended.err.contains(&words), "{}", ended.err);
+    assert!(!fs::exists(report).unwrap());
+}
+
 #[test]
 fn baselines_are_those_that_have_to_be_asked_for() {
     let folder = Folder::new();

@@ -2,11 +2,12 @@
 #![allow(dead_code)] // Every test file uses a part of it.
 
 use std::collections::HashMap;
+use std::ffi::OsStr;
 use std::fs;
 use std::io::Write;
 use std::process::{Child, Command, Stdio};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use orbflow_geometry::elementary::sin;
 use tempfile::TempDir;
@@ -33,6 +34,12 @@ impl Folder {
     pub fn path(&self, name: &str) -> String {
         let path = self.0.path().join(name);
         path.to_str().expect("the path is text").to_owned()
+    }
+
+    /// Its own name.
+    pub fn name(&self) -> &str {
+        let name = self.0.path().file_name().and_then(OsStr::to_str);
+        name.expect("the name is text")
     }
 
     pub fn write(&self, name: &str, text: &str) -> String {
@@ -106,6 +113,13 @@ pub fn run_with_input(arguments: &[&str], input: &[u8]) -> Ended {
     ended
 }
 
+/// Runs the program with a standard output that nobody reads.
+pub fn run_unread(arguments: &[&str]) -> Ended {
+    let mut child = start(arguments);
+    drop(child.stdout.take());
+    wait(child)
+}
+
 fn start(arguments: &[&str]) -> Child {
     Command::new(env!("CARGO_BIN_EXE_orbflow"))
         .args(arguments)
@@ -130,17 +144,24 @@ fn wait(child: Child) -> Ended {
 pub fn interrupt_while_working() {
     let folder = Folder::new();
     let input = folder.write("large.obj", &grid(150, ""));
-    let child = start(&["embed", &input, "--report", &folder.path("report.json")]);
-    while folder.names().len() < 2 {
-        thread::sleep(Duration::from_millis(5));
-    }
-    interrupt(&child);
-    let ended = wait(child);
+    let embed = ["embed", &input, "--report", &folder.path("report.json")];
+    let ended = interrupt_once(&embed, || folder.names().len() > 1);
     assert_eq!(
         (ended.code, ended.err.as_str()),
         (130, "orbflow: cancelled, nothing was written\n")
     );
     assert_eq!(folder.names(), ["large.obj"]);
+}
+
+/// Sends Ctrl-C to the program once `is_time`.
+#[cfg(unix)]
+pub fn interrupt_once(arguments: &[&str], is_time: impl Fn() -> bool) -> Ended {
+    let child = start(arguments);
+    while !is_time() {
+        thread::sleep(Duration::from_millis(5));
+    }
+    interrupt(&child);
+    wait(child)
 }
 
 /// Sends Ctrl-C to a program that waits for the rest of its input.
@@ -154,6 +175,25 @@ pub fn interrupt_while_reading() {
     interrupt(&child);
     let ended = wait(child);
     assert_eq!((ended.code, ended.out.len()), (130, 0));
+}
+
+/// Sends Ctrl-C to a program that waits for what a pipe will give it: `open` opens the pipe and
+/// waits for the program to do so.
+#[cfg(unix)]
+pub fn interrupt_while_opened(arguments: &[&str], open: impl FnOnce() -> fs::File) -> Ended {
+    let mut child = start(arguments);
+    let pipe = open();
+    interrupt(&child);
+    let patience = Instant::now() + Duration::from_secs(10);
+    while child.try_wait().expect("it was started").is_none() {
+        if Instant::now() > patience {
+            child.kill().expect("it still runs");
+            panic!("Ctrl-C does not end {arguments:?}");
+        }
+        thread::sleep(Duration::from_millis(5));
+    }
+    drop(pipe);
+    wait(child)
 }
 
 #[cfg(unix)]
