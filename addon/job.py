@@ -10,6 +10,7 @@ import orbflow_native
 
 from .artist import Artist
 from .mesh_arrays import Float, MeshArrays
+from .modifiers import Applied
 
 Listener = Callable[[str, float], None]
 
@@ -25,6 +26,8 @@ class Task:
     density: Float | None = None
     #: More objects that get its result: they share its mesh and have its scale.
     others: tuple[str, ...] = ()
+    #: How modifiers have made the arrays of the object's own mesh.
+    applied: Applied | None = None
 
 
 @dataclass(frozen=True)
@@ -82,6 +85,8 @@ def _remesh_one(
     cancel: orbflow_native.CancelToken,
 ) -> orbflow_native.Remeshed:
     arrays, artist = task.arrays, task.artist
+    if task.applied and task.applied.stack.half:
+        settings = settings | {"mirror": "xyz"[task.applied.stack.half.axis]}
     return orbflow_native.remesh(
         arrays.positions,
         arrays.loop_start,

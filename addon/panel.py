@@ -144,8 +144,16 @@ def sentence(reports: list[dict[str, Any]]) -> str:
         sum(report[side]["n_faces"] for report in reports) for side in ("input", "output")
     )
     meshes = f"{len(reports)} meshes: " if len(reports) > 1 else ""
-    told = "".join(f"; {each}" for each in exceptions(reports))
+    told = "".join(f"; {each}" for each in [*_applied(reports), *exceptions(reports)])
     return f"{meshes}{before:,} faces became {after:,}{told}"
+
+
+def _applied(reports: list[dict[str, Any]]) -> list[str]:
+    """Which modifiers went into the result, and which make it whole."""
+    names = list(dict.fromkeys(name for report in reports for name in report["modifiers"]))
+    halves = sorted({report["half"] for report in reports if report["half"]})
+    told = [f"modifiers applied: {', '.join(names)}"] if names else []
+    return told + [f"half is kept: modifier {name} makes it whole" for name in halves]
 
 
 def exceptions(reports: list[dict[str, Any]]) -> list[str]:
@@ -255,7 +263,7 @@ def _n_letters(context: bpy.types.Context) -> int:
 
 
 def _draw_score(column: bpy.types.UILayout, report: dict[str, Any], n_letters: int) -> None:
-    for text in exceptions([report]):
+    for text in [*_applied([report]), *exceptions([report])]:
         for i, line in enumerate(textwrap.wrap(text, n_letters)):
             column.label(text=line, icon="BLANK1" if i else "INFO")
     for words, value in rows(report):

@@ -37,6 +37,10 @@ _MIRRORS = (
     ("Y", "Y", "Across Y; a mesh that is not symmetric is made so from the side of positive Y"),
     ("Z", "Z", "Across Z; a mesh that is not symmetric is made so from the side of positive Z"),
 )
+_MIRROR_MODIFIERS = (
+    ("WHOLE", "Whole", "A Mirror modifier goes into the result and leaves the stack"),
+    ("HALF", "Half", "The result is one half, which the Mirror modifier makes whole as before"),
+)
 _PREDICTORS = (
     ("AUTO", "Auto", "Network for more than some 10,000 faces, where it saves time, else Solver"),
     (
@@ -124,6 +128,20 @@ class Settings:
         items=_MIRRORS,
         default="AUTO",
     )
+    use_modifiers: BoolProperty(
+        name="Apply Modifiers",
+        description=(
+            "Remesh what is seen: modifiers that make geometry, such as Mirror and Subdivision, go "
+            "into the result and leave the stack; those that follow a pose or time stay"
+        ),
+        default=True,
+    )
+    mirror_modifier: EnumProperty(
+        name="Mirror Modifier",
+        description="With Apply Modifiers: what becomes of a mesh that a Mirror modifier makes whole",
+        items=_MIRROR_MODIFIERS,
+        default="WHOLE",
+    )
     predictor: EnumProperty(
         name="Predictor",
         description="Who proposes where each vertex lies on the sphere",
@@ -146,8 +164,8 @@ class Settings:
 
 
 NAMES = tuple(Settings.__annotations__)
-# Settings that name data of the mesh.
-_OF_MESH = {"density", "marked_edges"}
+# Settings that say what of an object is read.
+_OF_MESH = {"density", "marked_edges", "mirror_modifier", "use_modifiers"}
 
 
 class OrbflowSettings(bpy.types.PropertyGroup, Settings):
@@ -174,7 +192,7 @@ class OrbflowSettings(bpy.types.PropertyGroup, Settings):
 
 
 def for_core(source: Settings) -> dict[str, Any]:
-    """The settings as keywords of `orbflow_native.remesh`, but for those that name data."""
+    """The settings as keywords of `orbflow_native.remesh`, but for those that say what is read."""
     values = {name: _value(getattr(source, name)) for name in NAMES if name not in _OF_MESH}
     return values | {
         "sharp_angle": math.degrees(source.sharp_angle),
