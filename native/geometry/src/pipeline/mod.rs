@@ -25,6 +25,7 @@ mod origins;
 mod part;
 mod probe;
 mod report;
+mod rods;
 mod settings;
 mod split;
 mod verbs;
