@@ -29,6 +29,7 @@ mod origins;
 mod part;
 mod probe;
 mod report;
+mod rods;
 mod settings;
 mod small;
 mod split;
