@@ -15,13 +15,24 @@ _LOOKS_BY_NAME = ("MIDDLEMOUSE", "MOUSEMOVE", "NDOF", "TIMER", "TRACKPAD", "WHEE
 _SAFE_REGIONS = {"ASSET_SHELF", "ASSET_SHELF_HEADER", "HEADER", "TOOLS", "TOOL_HEADER", "UI"}
 
 
-def passes(event: bpy.types.Event, window: bpy.types.Window | None) -> bool:
+def passes(event: bpy.types.Event, window: bpy.types.Window) -> bool:
     """Whether Blender may have an event of a window while a run is at work."""
     if event.ctrl and event.type in {"Z", "Y"}:
         return False
     if _looks_around(event) or (event.ctrl and event.type == "S"):
         return True
-    return window is not None and not _is_over_view(event, window)
+    return not _is_over_view(event, window)
+
+
+def wake_button(event: bpy.types.Event, window: bpy.types.Window) -> None:
+    """Lets Blender find a new button under a mouse that rests: it looks where the mouse moves."""
+    if any(
+        region.type == "UI" and _holds(region, event)
+        for area in window.screen.areas
+        if area.type == "VIEW_3D"
+        for region in area.regions
+    ):
+        window.cursor_warp(event.mouse_x, event.mouse_y)
 
 
 def _looks_around(event: bpy.types.Event) -> bool:

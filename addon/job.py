@@ -200,3 +200,7 @@ class Job:
 
     def _hear(self, stage: Stage) -> None:
         self.stage = stage
+
+
+# The job of the modal operator: the status bar and the panel draw it.
+running: list[Job] = []

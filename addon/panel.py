@@ -7,6 +7,7 @@ from typing import Any
 import bpy
 
 from . import runs, settings, words
+from .job import running
 from .runs import Left, Line
 
 # How much of a panel's width there is for no letter of a sentence, and how wide a letter is.
@@ -46,7 +47,11 @@ class VIEW3D_PT_orbflow(bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         _draw_settings(layout, context.scene.orbflow)
-        _button(layout, context)
+        if running:
+            # Under the mouse a button that is grey once stays so: Blender draws it as it was.
+            layout.label(text="At work: ESC stops it", icon="MOD_REMESH")
+        else:
+            _button(layout, context)
         n_letters = _n_letters(context)
         if lines := runs.lines():
             _draw_lines(layout.box().column(align=True), lines, n_letters)

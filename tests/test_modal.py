@@ -38,12 +38,16 @@ class Window:
         self.reports: list[str] = []
         self.redraws: list[str] = []
         self.were_at_work: list[bool] = []
+        self.warps: list[tuple[int, int]] = []
 
     def context(self) -> SimpleNamespace:
         view = SimpleNamespace(type="VIEW_3D", tag_redraw=self._draw_sidebar)
         other = SimpleNamespace(type="OUTLINER")
         screen = SimpleNamespace(areas=[other, view])
-        shown = SimpleNamespace(screen=SimpleNamespace(areas=AREAS))
+        shown = SimpleNamespace(
+            screen=SimpleNamespace(areas=AREAS),
+            cursor_warp=lambda x, y: self.warps.append((x, y)),
+        )
         manager = SimpleNamespace(
             windows=[SimpleNamespace(screen=screen)],
             event_timer_add=self._add_timer,
@@ -69,7 +73,7 @@ class Window:
         return self.timers[-1]
 
     def _draw_sidebar(self) -> None:
-        self.were_at_work.append(bool(addon("operators.remesh")._running))
+        self.were_at_work.append(bool(addon("job").running))
 
 
 @pytest.fixture
@@ -114,7 +118,7 @@ def until(ended: Callable[[], set[str]]) -> set[str]:
 
 
 def is_tidy(window: Window) -> bool:
-    at_work = bool(addon("operators.remesh")._running)
+    at_work = bool(addon("job").running)
     shown = window.were_at_work[-1:] == [False]
     return window.status is None and not window.timers and not at_work and shown
 
@@ -187,13 +191,25 @@ def test_escape_stops_it_and_changes_nothing(window: Window) -> None:
     assert is_tidy(window)
 
 
+@pytest.mark.parametrize(("over", "warps"), [("UI", [(X["UI"], 50)]), ("WINDOW", []), ("HUD", [])])
+def test_a_mouse_that_rests_on_the_button_is_moved_to_where_it_is(
+    window: Window, over: str, warps: list[tuple[int, int]]
+) -> None:
+    context = window.context()
+    self = operator(window, faces=200_000)
+    self.invoke(context, None)
+    addon("job").running[-1].cancel()
+    assert until(lambda: send(self, context, "TIMER", over=over)) == {"CANCELLED"}
+    assert window.warps == warps
+
+
 def test_escape_counts_even_when_the_work_is_already_done(window: Window) -> None:
     spot = bpy.data.objects["Spot"]
     before = arrays(spot)
     context = window.context()
     self = operator(window, faces=500)
     self.invoke(context, None)
-    addon("operators.remesh")._running[-1].wait()
+    addon("job").running[-1].wait()
     send(self, context, "ESC")
     assert send(self, context, "TIMER") == {"CANCELLED"}
     assert arrays(spot) == before
@@ -259,7 +275,7 @@ def test_the_status_bar_shows_the_step_the_share_and_how_to_stop(window: Window)
     context = window.context()
     self = operator(window, faces=500)
     self.invoke(context, None)
-    job = addon("operators.remesh")._running[-1]
+    job = addon("job").running[-1]
     job.wait()
     job.left_s = lambda: None
     job.stage = addon("job").Stage(0.25, "flow", 0)

@@ -8,15 +8,11 @@ import numpy as np
 import orbflow_native
 
 from .. import artist, density, events, mesh_arrays, outcomes, overlay, panel, runs, settings, words
-from ..job import Done, Failed, Job, Outcome, Task, Todo, remesh
+from ..job import Done, Failed, Job, Outcome, Task, Todo, remesh, running
 from ..mesh_arrays import MeshArrays
 from ..outcomes import Told
 
 _TICK_S = 0.05
-
-# The job of the modal operator, for the progress bar. Blender crashes when the status bar is given
-# a new function on every tick, so that one function is set once and reads this.
-_running: list[Job] = []
 
 
 class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
@@ -58,39 +54,41 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
         """Starts the thread and stays modal until it has ended."""
         if bpy.app.background:
             return self.execute(context)
-        _running.append(Job(_tasks(context, self), settings.for_core(self)))
+        running.append(Job(_tasks(context, self), settings.for_core(self)))
         self._timer = context.window_manager.event_timer_add(_TICK_S, window=context.window)
         context.window_manager.modal_handler_add(self)
+        # Blender crashes when this is given a new function on every tick: one reads the job.
         context.workspace.status_text_set(_draw_status)
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Watches the thread; lets the user look around meanwhile, but not edit."""
-        job = _running[-1]
+        job = running[-1]
         if event.type == "ESC" and event.value == "PRESS":
             job.cancel()
         if event.type == "TIMER":
             panel.redraw_status_bar(context)
             if job.has_ended():
-                return self._end(context, job)
+                self._tidy(context)
+                events.wake_button(event, context.window)
+                return self._end(job)
         return {"PASS_THROUGH"} if events.passes(event, context.window) else {"RUNNING_MODAL"}
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Blender takes the operator away, for example when another file is opened."""
-        job = _running[-1]
+        job = running[-1]
         job.cancel()
         job.wait()
         self._tidy(context)
 
-    def _end(self, context: bpy.types.Context, job: Job) -> set[str]:
-        self._tidy(context)
+    def _end(self, job: Job) -> set[str]:
         if job.is_cancelled:
             self.report({"INFO"}, "cancelled; nothing was changed")
             return {"CANCELLED"}
         return self._finish(job.outcomes)
 
     def _tidy(self, context: bpy.types.Context) -> None:
-        _running.clear()
+        running.clear()
         context.window_manager.event_timer_remove(self._timer)
         context.workspace.status_text_set(None)
         # One that was left during the run has the empty text that drew the bar.
@@ -135,14 +133,9 @@ def _reports(told: list[Told]) -> list[tuple[str, str]]:
     return [*(("INFO", each) for each in noted), last]
 
 
-def is_at_work() -> bool:
-    """Whether a run is at work behind the button."""
-    return bool(_running)
-
-
 def why_not(context: bpy.types.Context) -> str:
     """Why the button is greyed out; empty when it is not."""
-    if _running:
+    if running:
         return "Orbflow is at work; press ESC to stop it"
     if context.mode != "OBJECT":
         return "Leave edit, sculpt or paint mode first: Orbflow works in object mode"
@@ -239,9 +232,9 @@ def _are_unchanged(things: list[bpy.types.Object], arrays: MeshArrays) -> bool:
 
 
 def _draw_status(bar: bpy.types.Header, _context: bpy.types.Context) -> None:
-    if not _running:
+    if not running:
         return
-    job = _running[-1]
+    job = running[-1]
     stage, n = job.stage, len(job.tasks)
     which = f" {stage.at + 1:,} of {n:,}" if n > 1 else ""
     row = bar.layout.row()

@@ -9,8 +9,8 @@ from bpy.props import IntProperty, StringProperty
 from mathutils import Vector
 
 from .. import runs
+from ..job import running
 from ..spots import Complaint, Spot
-from . import remesh
 
 # Of the mode of selection: vertices, edges, faces.
 _EDGES, _FACES = (False, True, False), (False, False, True)
@@ -34,9 +34,9 @@ class OBJECT_OT_orbflow_show(bpy.types.Operator):
     @classmethod
     def poll(cls, _context: bpy.types.Context) -> bool:
         """Whether meshes may be put into edit mode."""
-        if at_work := remesh.is_at_work():
+        if running:
             cls.poll_message_set("Orbflow is at work; press ESC to stop it")
-        return not at_work
+        return not running
 
     @classmethod
     def description(cls, _context: bpy.types.Context, properties: Any) -> str:  # noqa: ANN401
