@@ -4,7 +4,7 @@
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import accumulate
 from typing import Any
 
@@ -199,7 +199,8 @@ class Job:
             self.is_cancelled = True
 
     def _hear(self, stage: Stage) -> None:
-        self.stage = stage
+        # What belongs to no step has no name.
+        self.stage = replace(stage, step=stage.step or self.stage.step)
 
 
 # The job of the modal operator: the status bar and the panel draw it.

@@ -74,7 +74,7 @@ def refused(failed: Failed) -> Told:
     said = "; ".join(each.words for each in complaints)
     if thing and _is_only_one(failed.name):
         runs.remember_left(thing, Left(said or failed.error, complaints))
-    text = f"{said} (in exact words: {failed.error})" if said else failed.error
+    text = f"{said} \nIn exact words: {failed.error}" if said else failed.error
     names = (failed.name, *(task.others if task else ()))
     return Told([_line(name, "refused", said or failed.error) for name in names], text, True)
 

@@ -13,8 +13,8 @@ from .runs import Left, Line
 # How much of a panel's width there is for no letter of a sentence, and how wide a letter is.
 _MARGIN_PX = 70.0
 _LETTER_PX = 6.0
-# How much less there is beside a button.
-_BUTTON_PX = 60.0
+# The share of the width that a sentence has beside a button.
+_BESIDE = 0.74
 # So many objects have a line of their own; a list that is longer takes long to draw and to read.
 _MOST_LINES = 40
 _ICONS = {"refused": "CANCEL", "warned": "ERROR", "done": "CHECKMARK"}
@@ -137,10 +137,10 @@ def _proposal(embedding: dict[str, Any]) -> list[tuple[str, str]]:
     ]
 
 
-def _n_letters(context: bpy.types.Context, beside_px: float = 0.0) -> int:
-    """How many letters fit beside an icon, and a button, in the panel as wide as it is."""
+def _n_letters(context: bpy.types.Context, share: float = 1.0) -> int:
+    """How many letters fit beside an icon in a share of the panel as wide as it is."""
     scale = context.preferences.system.ui_scale
-    return max(10, int((context.region.width / scale - _MARGIN_PX - beside_px) / _LETTER_PX))
+    return max(10, int((share * context.region.width / scale - _MARGIN_PX) / _LETTER_PX))
 
 
 def _draw_lines(column: bpy.types.UILayout, lines: list[Line], n_letters: int) -> None:
@@ -171,11 +171,11 @@ def _draw_left(
     if left.error and not left.complaints:
         _draw_text(column, left.error, "BLANK1", _n_letters(context))
     for i, complaint in enumerate(left.complaints):
-        row = column.row()
-        beside = _BUTTON_PX if complaint.spot else 0.0
-        _draw_text(row.column(align=True), complaint.words, "DOT", _n_letters(context, beside))
+        share = _BESIDE if complaint.spot else 1.0
+        row = column.split(factor=share)
+        _draw_text(row.column(align=True), complaint.words, "DOT", _n_letters(context, share))
         if complaint.spot:
-            button = row.operator("object.orbflow_show", text="Show", icon="NONE")
+            button = row.operator("object.orbflow_show", text="Show")
             button.name, button.row = name, i
 
 

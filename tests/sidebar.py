@@ -18,7 +18,7 @@ class Layout:
     def part(self, **_how: object) -> "Layout":
         return Layout(self)
 
-    column = row = box = part
+    column = row = box = split = part
 
     def prop(self, _of: object, name: str, **_how: object) -> None:
         self.drawn.append((name, self))

@@ -315,6 +315,18 @@ def test_every_step_of_the_core_has_words_for_artists() -> None:
     assert {"clean", "flow", "score"} < steps <= addon("words").STEPS.keys()
 
 
+def test_what_belongs_to_no_step_goes_on_under_the_name_of_the_last(window: Window) -> None:
+    context = window.context()
+    self = operator(window, faces=500)
+    self.invoke(context, None)
+    job = addon("job").running[-1]
+    job.wait()
+    for step in ("flow", ""):
+        job._hear(addon("job").Stage(0.25, step, 0))
+    assert "laying the loops" in shown_in_status_bar(window)[0]
+    self.cancel(context)
+
+
 @pytest.mark.usefixtures("_extension")
 def test_the_time_left_comes_from_what_was_done_and_does_not_jump() -> None:
     now = 0.0

@@ -78,7 +78,7 @@ def test_a_refusal_stays_until_the_mesh_changes(
     half = open_fixture("05")
     exact = "1 border loop, the first through vertex 3"
     told = refuse(reason("border", exact, half, edges=border(half), n_loops=1))
-    assert f"{half.name}: has 1 hole (open edges) (in exact words: {exact})" in told
+    assert f"{half.name}: has 1 hole (open edges) \nIn exact words: {exact}" in told
     said = [f"CANCEL {half.name} was left as it was", "DOT has 1 hole (open edges)", "NONE Show"]
     assert rows(half) == said
     half.name = "Renamed"
