@@ -12,6 +12,7 @@ import orbflow_native
 
 from .artist import Artist
 from .mesh_arrays import Float, MeshArrays
+from .modifiers import Applied
 
 # Before this much has passed, and this share is done, nobody can say how long the rest takes.
 _LEAST_S = 1.0
@@ -45,6 +46,8 @@ class Task:
     density: Float | None = None
     #: More objects that get its result: they share its mesh and have its scale.
     others: tuple[str, ...] = ()
+    #: How modifiers have made the arrays of the object's own mesh.
+    applied: Applied | None = None
 
 
 @dataclass(frozen=True)
@@ -119,6 +122,8 @@ def _remesh_one(
     cancel: orbflow_native.CancelToken,
 ) -> orbflow_native.Remeshed:
     arrays, artist = task.arrays, task.artist
+    if task.applied and task.applied.stack.half:
+        settings = settings | {"mirror": "xyz"[task.applied.stack.half.axis]}
     return orbflow_native.remesh(
         arrays.positions,
         arrays.loop_start,

@@ -48,7 +48,7 @@ def done(outcome: Done, report: dict[str, Any], old: Before) -> Told:
     """Tells of a task that was done; `report` is what the panel keeps of it."""
     task = outcome.task
     thing = bpy.data.objects[task.name, None]
-    for name in ("kept", "warnings", "modifiers"):
+    for name in ("kept", "warnings"):
         report.setdefault(name, [])
     report["clean"].setdefault("n_seam_welded", 0)
     report["n_hidden"] = old.n_hidden
@@ -56,9 +56,13 @@ def done(outcome: Done, report: dict[str, Any], old: Before) -> Told:
     if old.print:
         runs.forget_left(old.print)
     if report["kept"]:
-        numbers = spots.in_result(task.arrays, outcome.result)
         n_parts = len(report["parts"]) + len(report["kept"])
-        runs.remember_left(thing, Left("", spots.complaints(report["kept"], numbers, n_parts)))
+        numbers = spots.in_result(task.arrays, outcome.result)
+        if report["half"]:
+            # The mesh is a part of the result.
+            numbers = spots.gone(task.arrays)
+        complaints = spots.complaints(report["kept"], numbers, n_parts)
+        runs.remember_left(thing, Left("", complaints))
     state = "warned" if words.is_warned(report) else "done"
     lines = [_line(name, state, words.line(report)) for name in (task.name, *task.others)]
     return Told(lines, words.sentence(report), words.is_grave(report))

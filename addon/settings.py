@@ -42,6 +42,10 @@ _MIRRORS = (
     ("Y", "Y", "Across Y; a mesh that is not symmetric is made so from the side of positive Y"),
     ("Z", "Z", "Across Z; a mesh that is not symmetric is made so from the side of positive Z"),
 )
+_MIRROR_MODIFIERS = (
+    ("WHOLE", "Whole", "A Mirror modifier goes into the result and leaves the stack"),
+    ("HALF", "Half", "The result is one half, which the Mirror modifier makes whole as before"),
+)
 _PREDICTORS = (
     ("AUTO", "Auto", "Network for more than some 10,000 faces, where it saves time, else Solver"),
     (
@@ -133,6 +137,20 @@ class Settings:
         items=_MIRRORS,
         default="AUTO",
     )
+    use_modifiers: BoolProperty(
+        name="Apply Modifiers",
+        description=(
+            "Remesh what is seen: modifiers that make geometry, such as Mirror and Subdivision, go "
+            "into the result and leave the stack; those that follow a pose or time stay"
+        ),
+        default=True,
+    )
+    mirror_modifier: EnumProperty(
+        name="Mirror Modifier",
+        description="What becomes of a mesh that a Mirror modifier makes whole",
+        items=_MIRROR_MODIFIERS,
+        default="WHOLE",
+    )
     small_parts: EnumProperty(
         name="Small Parts",
         description="What becomes of parts that are too small for their share of the faces",
@@ -188,8 +206,8 @@ class Settings:
 # Which settings only quads that flow heed.
 _OF_FLOW = {"follow_shape", "adaptivity", "density", "mirror"}
 NAMES = tuple(Settings.__annotations__)
-# Settings that name data of the mesh.
-_OF_MESH = {"density", "marked_edges"}
+# Settings that say what of an object is read.
+_OF_MESH = {"density", "marked_edges", "mirror_modifier", "use_modifiers"}
 # Settings that are one with another in the core.
 _IN_OTHERS = {"use_weld"}
 
@@ -218,7 +236,7 @@ class OrbflowSettings(bpy.types.PropertyGroup, Settings):
 
 
 def for_core(source: Settings) -> dict[str, Any]:
-    """The settings as keywords of `orbflow_native.remesh`, but for those that name data."""
+    """The settings as keywords of `orbflow_native.remesh`, but for those that say what is read."""
     names = [name for name in NAMES if name not in _OF_MESH | _IN_OTHERS]
     values = {name: _value(getattr(source, name)) for name in names}
     given = values | {
@@ -238,6 +256,8 @@ def is_of_use(source: Settings, name: str) -> bool:
     """Whether a setting changes anything with the others as they are."""
     if name in _OF_FLOW:
         return source.kind == "QUADS" and source.primitive in {"AUTO", "FLOW"}
+    if name == "mirror_modifier":
+        return source.use_modifiers
     return name != "weld" or source.use_weld
 
 

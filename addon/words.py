@@ -174,9 +174,12 @@ def _welded(report: dict[str, Any]) -> str:
 
 
 def _modifiers(report: dict[str, Any]) -> list[str]:
-    """Which modifiers went into the result, and which that know more than the surface stay."""
-    told = (("applied", report["modifiers"]), ("to be looked at", report["nodes"]))
-    return [f"modifiers {what}: {', '.join(names)}" for what, names in told if names]
+    """Which modifiers went into the result, which makes it whole, and which may not fit it."""
+    names, half = ", ".join(report["modifiers"]), report["half"]
+    told = [f"modifiers applied: {names}" if names else ""]
+    told += [f"half is kept: modifier {half} makes it whole" if half else ""]
+    told += [f"modifier {name} stays: see whether it fits the new mesh" for name in report["nodes"]]
+    return [each for each in told if each]
 
 
 def _is_left(part: dict[str, Any]) -> bool:

@@ -1,15 +1,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The button: Object > Orbflow Remesh."""
 
+from dataclasses import replace
 from typing import Any
 
 import bpy
 import numpy as np
 import orbflow_native
 
-from .. import artist, density, events, mesh_arrays, outcomes, overlay, panel, runs, settings, words
+from .. import (
+    artist,
+    density,
+    events,
+    mesh_arrays,
+    modifiers,
+    outcomes,
+    overlay,
+    panel,
+    runs,
+    settings,
+    words,
+)
 from ..job import Done, Failed, Job, Outcome, Task, Todo, remesh, running
-from ..mesh_arrays import MeshArrays
 from ..outcomes import Told
 
 _TICK_S = 0.05
@@ -153,18 +165,27 @@ def _is_editable(thing: bpy.types.Object) -> bool:
 
 def _tasks(context: bpy.types.Context, wanted: settings.Settings) -> list[Todo]:
     context.view_layer.update()
-    failed: list[Todo] = []
+    todo: list[Todo] = []
     # Objects that share a mesh go on sharing it where one result does for them.
     alike: dict[Any, list[bpy.types.Object]] = {}
-    for thing in context.selected_objects:
-        if thing.type != "MESH":
-            continue
+    for thing in [each for each in context.selected_objects if each.type == "MESH"]:
         if reason := _why_left(thing):
-            failed.append(Failed(thing.name, reason))
-        else:
-            scale = (f"{x:.5g}" for x in thing.matrix_world.to_scale())
-            alike.setdefault((thing.data, *scale), []).append(thing)
-    return failed + [_task(things, wanted) for things in alike.values()]
+            todo.append(Failed(thing.name, reason))
+            continue
+        try:
+            stack = modifiers.stack(context, thing, wanted)
+        except modifiers.Refused as error:
+            todo.append(Failed(thing.name, str(error)))
+            continue
+        scale = (f"{x:.5g}" for x in thing.matrix_world.to_scale())
+        alike.setdefault((thing.data, stack, *scale), []).append(thing)
+    for (_, stack, *_), things in alike.items():
+        try:
+            with modifiers.seen(context, things[0], stack) as seen:
+                todo.append(_task(things, seen, wanted))
+        except modifiers.Refused as error:
+            todo.append(Failed(things[0].name, str(error)))
+    return todo
 
 
 def _why_left(thing: bpy.types.Object) -> str:
@@ -173,43 +194,48 @@ def _why_left(thing: bpy.types.Object) -> str:
         return "it is linked from another file and cannot be changed"
     if _is_being_edited(thing):
         return "it is not in object mode, in which Orbflow works"
-    for each in thing.modifiers:
-        if each.type == "MULTIRES" and each.total_levels:
-            return f"apply or remove modifier {each.name} first: it holds a sculpt"
     return ""
 
 
-def _task(things: list[bpy.types.Object], wanted: settings.Settings) -> Todo:
+def _task(things: list[bpy.types.Object], seen: modifiers.Seen, wanted: settings.Settings) -> Todo:
     thing, *others = things
-    arrays = mesh_arrays.read(thing.data, wanted.marked_edges)
+    arrays = mesh_arrays.read(seen.thing.data, wanted.marked_edges)
     scale = tuple(thing.matrix_world.to_scale())
-    names = tuple(each.name for each in others)
-    given = artist.read(things)
+    given = artist.read([seen.thing, *others])
+    given = replace(given, keys=seen.keys, lost=given.lost + seen.lost)
     try:
-        wish = density.read(thing, wanted.density, given.groups)
+        wish = density.read(seen.thing, wanted.density, given.groups)
     except density.NoSuchName as error:
         return Failed(thing.name, str(error))
-    return Task(thing.name, arrays, scale, given, wish, names)
+    names = tuple(each.name for each in others)
+    return Task(thing.name, arrays, scale, given, wish, names, seen.applied)
 
 
 def _replace(outcome: Done) -> dict[str, Any] | Failed:
     """Gives an object, and those that share its mesh, its new one; returns what is told of it."""
-    task, given = outcome.task, outcome.task.artist
-    report = outcome.result.report | {"lost": given.lost if given else []}
+    task, given, applied = outcome.task, outcome.task.artist, outcome.task.applied
     # A linked object may have the same name.
     things = [bpy.data.objects.get((name, None)) for name in (task.name, *task.others)]
-    if not _are_unchanged(things, task.arrays):
+    if not _are_unchanged(things, task):
         return Failed(task.name, "it was changed meanwhile and is left as it is now")
+    try:
+        result = modifiers.rest_of(outcome.result, applied)
+    except modifiers.Refused as error:
+        return Failed(task.name, str(error))
     thing, *others = things
     old, name = thing.data, thing.data.name
-    thing.data = mesh_arrays.write(outcome.result, like=old)
+    thing.data = mesh_arrays.write(result, like=old)
     if given:
-        artist.write(thing, given, outcome.result, old)
+        artist.write(thing, given, result, old)
     for each in others:
         each.data = thing.data
+    if applied:
+        modifiers.leave(things, applied)
     if old.users == 0:
         bpy.data.meshes.remove(old)
         thing.data.name = name
+    report = outcome.result.report | {"lost": given.lost if given else []}
+    report |= modifiers.told(applied)
     runs.remember(thing, report, outcome.result.crosses)
     return report
 
@@ -219,14 +245,16 @@ def _is_being_edited(thing: bpy.types.Object) -> bool:
     return thing.mode != "OBJECT" or thing.data.is_editmode
 
 
-def _are_unchanged(things: list[bpy.types.Object], arrays: MeshArrays) -> bool:
+def _are_unchanged(things: list[bpy.types.Object], task: Task) -> bool:
     """Whether another window has left objects of one mesh as they were read."""
     if None in things or any(each.type != "MESH" or _is_being_edited(each) for each in things):
         return False
-    mesh = things[0].data
-    now = mesh_arrays.read(mesh)
+    mesh, applied = things[0].data, task.applied
+    if applied and not modifiers.are_unchanged(things[0], applied.stack):
+        return False
+    now, before = mesh_arrays.read(mesh), applied.base if applied else task.arrays
     return all(each.data == mesh for each in things) and all(
-        np.array_equal(getattr(now, name), getattr(arrays, name))
+        np.array_equal(getattr(now, name), getattr(before, name))
         for name in ("positions", "loop_start", "corner_vert")
     )
 
