@@ -49,7 +49,7 @@ def is_symmetric(mesh: Any) -> bool:  # noqa: ANN401
 
 
 def told(thing: Any) -> dict[str, Any]:  # noqa: ANN401
-    return addon("panel").last_report(thing.name)
+    return addon("runs").last_report(thing.name)
 
 
 @pytest.fixture(autouse=True)
