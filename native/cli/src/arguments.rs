@@ -13,9 +13,9 @@ use crate::place::Place;
 
 const AFTER_HELP: &str = "\
 Meshes are read as OBJ, PLY, STL or OFF and written as OBJ, PLY or OFF, by the ending of the file
-name. '-' is standard input or output; standard input is recognised by its first bytes unless
---input-format is given, standard output is OBJ unless --output-format is given. Files are
-written whole or not at all.
+name; import others (glTF, FBX, ...) in Blender, or convert them. '-' is standard input or output;
+standard input is recognised by its first bytes unless --input-format is given, standard output is
+OBJ unless --output-format is given. Files are written whole or not at all.
 
 Exit codes: 0 done, 2 wrong usage, 3 this input cannot be done, 130 cancelled by Ctrl-C.";
 

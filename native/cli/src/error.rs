@@ -21,6 +21,12 @@ pub enum Error {
     /// The input cannot be opened or its bytes not fetched.
     #[error("cannot read {place}: {cause}")]
     Open { place: Place, cause: io::Error },
+    /// The input is a file of another program.
+    #[error(
+        "{place}: a {name} file cannot be read; open it in Blender, where the add-on does the same, or \
+         convert it to OBJ or PLY"
+    )]
+    Foreign { place: Place, name: &'static str },
     /// The input's bytes are no mesh.
     #[error("{place}: {cause}")]
     Read { place: Place, cause: ReadError },

@@ -11,6 +11,7 @@ mod commands;
 mod error;
 #[cfg(feature = "train")]
 mod evaluate;
+mod foreign;
 mod inputs;
 mod interrupt;
 mod outputs;

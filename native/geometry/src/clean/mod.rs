@@ -11,7 +11,6 @@
 //!
 //! Not done: holes stay open, parts that cross stay crossed, an inside-out part stays so.
 
-mod ears;
 mod edges;
 mod fans;
 mod mend;

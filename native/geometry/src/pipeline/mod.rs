@@ -25,9 +25,11 @@ mod origins;
 mod part;
 mod probe;
 mod report;
+mod scored;
 mod settings;
 mod split;
 mod verbs;
+mod warning;
 
 pub use crate::transfer::CarriedEdge;
 pub use attempt::Attempt;
@@ -39,8 +41,10 @@ pub use flowed::Flowed;
 pub use mirror::{Mirror, Plane, Through};
 pub use origins::{Origin, Origins};
 pub use report::{Mirrored, PartReport, Reduced, Report};
+pub use scored::score;
 pub use settings::{Kind, MAX_FACES, MIN_FACES, Primitive, Settings, Style};
 pub use verbs::{Decimated, EmbedReport, EmbeddedParts, decimate, embed};
+pub use warning::{Fault, Warning};
 
 use glam::DVec3;
 
@@ -48,15 +52,17 @@ use crate::embed::OffsetPredictor;
 use crate::mesh::{PolygonMesh, VertexId};
 use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
-use crate::score::{self, Score};
 use crate::{measure, transfer};
 use clock::Clock;
 use density::Density;
+use even::Marked;
 use frame::Prepared;
 use join::Joined;
 use marks::Marks;
 use mirror::Role;
 use part::{PartJob, PartResult, Wanted};
+use scored::Scored;
+use warning::Made;
 
 /// The version of Orbflow.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -169,13 +175,18 @@ fn run(
         .mesh
         .with_positions(prepared.frame.leave(joined.mesh.positions()));
     let stage = progress.part("score", 0.92, 1.0);
-    let (score, score_refused) = match settings.score() {
-        Some(wanted) => {
-            let scored = clock.step("score", || score::score(input.mesh, &mesh, &wanted, &stage));
-            told(scored)?
-        }
-        None => (None, None),
+    let topology = measure::topology_of_triangles(&prepared.mesh);
+    let against = (input.mesh, topology);
+    let scored = Scored::new(against, &mesh, settings, (&mut clock, &stage))?;
+    let made = Made {
+        mesh: &mesh,
+        parts: &joined.parts,
+        plane,
+        diagonal: prepared.frame.grow(DVec3::X).x,
+        glance: scored.glance,
+        lost_marks: lost_marks(&prepared, &marks, &joined, progress)?,
     };
+    let warnings = warning::warnings(&made, settings, progress)?;
     let report = Report {
         version: VERSION,
         settings: settings.clone(),
@@ -186,8 +197,9 @@ fn run(
         embedding: joined.embedding,
         parts: joined.parts,
         carried: carried_report,
-        score,
-        score_refused,
+        score: scored.score,
+        score_refused: scored.refused,
+        warnings,
         steps: clock.into_steps(),
         peak_memory_mb: peak_memory_mb(),
     };
@@ -255,13 +267,15 @@ fn run_parts(
     Ok(join::join(results.into_iter().flatten().collect()))
 }
 
-/// A result that cannot be scored is a result all the same; only a cancellation ends the run.
-fn told(scored: Result<Score, score::Error>) -> Result<(Option<Score>, Option<String>), Cancelled> {
-    match scored {
-        Ok(score) => Ok((Some(score), None)),
-        Err(score::Error::Cancelled(cancelled)) => Err(cancelled),
-        Err(error) => Ok((None, Some(error.to_string()))),
-    }
+/// The share of the marked edges that no edge lies along.
+fn lost_marks(
+    prepared: &Prepared,
+    marks: &Marks,
+    joined: &Joined,
+    progress: &Progress<'_>,
+) -> Result<f64, Cancelled> {
+    let marked = Marked::new(&prepared.mesh, &marks.on(&prepared.mesh));
+    marked.lost((&joined.mesh, &joined.features), progress)
 }
 
 /// The artist's data on the result.
