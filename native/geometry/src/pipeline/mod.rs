@@ -21,6 +21,7 @@ mod even;
 mod flow;
 mod flowed;
 mod frame;
+mod handle;
 mod join;
 mod kept;
 mod marks;
