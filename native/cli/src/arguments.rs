@@ -9,6 +9,7 @@ use orbflow_geometry::pipeline::{Kind, Mirror, Primitive, Settings, Style};
 use orbflow_geometry::score;
 
 use crate::parsers::{degrees, format, kind, mirror, n_faces, primitive, share};
+use crate::parts::Parts;
 use crate::place::Place;
 
 const AFTER_HELP: &str = "\
@@ -17,7 +18,8 @@ name; import others (glTF, FBX, ...) in Blender, or convert them. '-' is standar
 standard input is recognised by its first bytes unless --input-format is given, standard output is
 OBJ unless --output-format is given. Files are written whole or not at all.
 
-Exit codes: 0 done, 2 wrong usage, 3 this input cannot be done, 130 cancelled by Ctrl-C.";
+Exit codes: 0 done, 2 wrong usage, 3 this input cannot be done (with --strict: not soundly), 130
+cancelled by Ctrl-C.";
 
 /// Rebuild meshes with a chosen face count and good edge flow, by deforming a sphere.
 #[derive(Parser, Debug)]
@@ -122,6 +124,8 @@ pub struct Wanted {
     /// middle of the mesh; auto: across the first in which every vertex is another's image
     #[arg(long, default_value = "auto", value_parser = mirror())]
     pub mirror: Mirror,
+    #[command(flatten)]
+    pub parts: Parts,
 }
 
 /// How quads flow.
@@ -259,7 +263,7 @@ pub fn output_format(place: &Place, wanted: Option<Format>) -> Option<Format> {
 impl Wanted {
     /// What the core is asked for.
     pub fn settings(&self, work: Work, files: &Rebuilt) -> Settings {
-        Settings {
+        self.parts.asked(Settings {
             faces: self.faces,
             kind: self.kind(),
             primitive: self.primitive,
@@ -273,7 +277,7 @@ impl Wanted {
             threads: work.threads.n,
             score: files.report.as_ref().map(|_| score::Settings::default()),
             ..Settings::default()
-        }
+        })
     }
 
     fn kind(&self) -> Kind {

@@ -1,9 +1,10 @@
 //! How good a result is: the score, or the little of it that warnings are made of.
 
 use super::clock::Clock;
+use super::frame::Prepared;
 use super::settings::Settings;
 use crate::clean;
-use crate::measure::{Topology, topology_of_triangles};
+use crate::measure::topology_of_triangles;
 use crate::mesh::PolygonMesh;
 use crate::progress::{Cancelled, Progress};
 use crate::score::{self, Glance, Reference, Score};
@@ -19,18 +20,18 @@ pub struct Scored {
 }
 
 impl Scored {
-    /// Measures a result against its input, which hangs together in some way once it is cleaned.
+    /// Measures a result against its input, whose topology is that of the prepared mesh.
     ///
     /// A result that cannot be scored is a result all the same; only a cancellation ends the run.
     pub fn new(
-        (input, topology): (&PolygonMesh, Topology),
+        (input, prepared): (&PolygonMesh, &Prepared),
         output: &PolygonMesh,
         settings: &Settings,
         (clock, progress): (&mut Clock, &Progress<'_>),
     ) -> Result<Self, Cancelled> {
         let reference = Reference {
             mesh: input,
-            topology: Some(topology),
+            topology: Some(topology_of_triangles(&prepared.mesh)),
         };
         let mut scored = Self {
             score: None,
@@ -64,8 +65,8 @@ fn told<T>(found: Result<T, score::Error>) -> Result<Result<T, score::Error>, Ca
 }
 
 /// Says how good `output` is as a new mesh of `input`, as [`remesh`](super::remesh) does: whether the
-/// topology is the same is told of the input once it is cleaned, with equal points welded and faces
-/// without area or that repeat dropped; of one that cannot be cleaned, as it comes.
+/// topology is the same is told of the input once it is cleaned, with borders that lie on each other
+/// welded and faces without area or that repeat dropped; of one that cannot be cleaned, as it comes.
 ///
 /// # Errors
 /// When one of them has no area, a setting is 0, or cancelled.
@@ -75,10 +76,11 @@ pub fn score(
     settings: &score::Settings,
     progress: &Progress<'_>,
 ) -> Result<Score, score::Error> {
-    let topology = match clean::clean(input, &progress.part("", 0.0, 0.1)) {
-        Ok(cleaned) => Some(topology_of_triangles(&cleaned.mesh)),
+    let weld = Settings::default().weld;
+    let topology = match clean::take_apart(input, weld, &progress.part("", 0.0, 0.1)) {
         Err(clean::Error::Cancelled(cancelled)) => return Err(cancelled.into()),
-        Err(_) => None,
+        Ok(apart) if apart.tangles.is_empty() => Some(topology_of_triangles(&apart.mesh)),
+        _ => None,
     };
     let reference = Reference {
         mesh: input,

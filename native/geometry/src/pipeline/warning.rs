@@ -172,6 +172,13 @@ impl From<Fault> for Warning {
     }
 }
 
+/// The sentences of what is grave, in one line.
+pub(super) fn grave(warnings: &[Warning]) -> String {
+    let grave = warnings.iter().filter(|warning| warning.grave);
+    let texts: Vec<&str> = grave.map(|warning| warning.text.as_str()).collect();
+    texts.join("; ")
+}
+
 /// All that is not as it was to be, what is grave first.
 pub(super) fn warnings(
     made: &Made<'_>,
