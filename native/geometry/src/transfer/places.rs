@@ -20,6 +20,10 @@ const VERTICES: usize = 2048;
 /// above, only time grows.
 const REACH: f64 = 1.25;
 
+/// Cosine of the angle to the face's normal from which on a triangle is of the other side: 120°.
+/// Below, the way round a thin limb leads to the far side of a cut; above, a face that lies across a
+/// sharp edge misses what is behind the edge.
+const BEHIND: f64 = -0.5;
 /// A triangle farther from the middle must be nearer to a corner by more than this share of the
 /// squared reach.
 const CLEARLY_NEARER: f64 = 1e-12;
@@ -142,12 +146,17 @@ impl Face {
         self.corners.iter().map(place).collect()
     }
 
-    /// The triangles around the one under the middle that can be reached without crossing a cut, in
-    /// the order of the steps from it.
+    /// The triangles around the one under the middle that can be reached without crossing a cut or
+    /// going behind the face, in the order of the steps from it.
     fn patch(&self, under: FaceId, old: &TriangleMesh, cuts: &HalfedgeMap<bool>) -> Vec<FaceId> {
         let reach = (REACH * self.radius).powi(2);
         let is_near =
             |face| closest_on_triangle(self.middle, old.triangle(face)).distance_squared <= reach;
+        let is_behind = |face| {
+            let [a, b, c] = old.triangle(face);
+            let normal = (b - a).cross(c - a);
+            normal.dot(self.normal) < BEHIND * normal.length() * self.normal.length()
+        };
         let mut seen = HashSet::from([under]);
         let mut patch = vec![under];
         let mut n_done = 0;
@@ -157,7 +166,7 @@ impl Face {
             let ways = [first, first.next(), first.prev()].into_iter();
             let beyond = ways.filter(|&h| !cuts[h]).filter_map(|h| old.twin(h));
             for next in beyond.map(HalfedgeId::face) {
-                if seen.insert(next) && is_near(next) {
+                if seen.insert(next) && is_near(next) && !is_behind(next) {
                     patch.push(next);
                 }
             }
@@ -223,6 +232,31 @@ mod tests {
             n_across += usize::from(is_across);
         }
         assert!(n_across > 10, "no face lies across the cut");
+    }
+
+    #[test]
+    fn no_way_leads_round_a_limb_to_the_far_side_of_a_cut() {
+        let round = |p: DVec3| {
+            let (flat, z) = (p.with_z(0.0), 4.0 * p.z);
+            let radius = p.x.abs().max(p.y.abs());
+            (flat.normalize_or_zero() * radius).with_z(z)
+        };
+        let limb = shapes::mapped_cube(8, round);
+        let on_seam = |p: DVec3| p.y.abs() < 1e-9 && p.x > 0.9;
+        let cut = |h| [limb.origin(h), limb.target(h)].map(|v| limb.position(v));
+        let cut = |h| cut(h).into_iter().all(on_seam);
+        let cuts: HalfedgeMap<bool> = limb.halfedge_ids().map(cut).collect();
+        // Three of these would go round the limb; the cut lies near the far side of this one.
+        let [low, high] = [DVec3::new(-0.32, -0.95, 0.0), DVec3::new(0.98, 0.2, 0.0)];
+        let corners = [(low, -1.5), (high, -1.5), (high, 1.5), (low, 1.5)];
+        let corners = corners.map(|(flat, z)| flat.with_z(z));
+        let face = PolygonMesh::from_faces(corners.to_vec(), &[[0, 1, 2, 3]]).unwrap();
+        let tree = Bvh::of_mesh(&limb);
+        let places = places((&limb, &tree), &[cuts], &face, &Progress::none()).unwrap();
+        for place in &places.corners[0] {
+            let of = limb.triangle(place.face).iter().sum::<DVec3>();
+            assert!(of.y < 0.0, "{} is beyond the cut", place.position);
+        }
     }
 
     #[test]
