@@ -2,18 +2,20 @@
 """Orbflow: rebuilds a mesh with good edge flow by deforming a sphere into it.
 
 The extension reads arrays from Blender, asks `orbflow_native`, and writes arrays back; it computes
-nothing itself. `operators/remesh.py` is the button, `job.py` the thread behind it.
+nothing itself. `operators/remesh.py` is the button, `job.py` the thread behind it, `words.py` what
+is said of a run.
 """
 
 import bpy
 
-from . import overlay, panel, preferences, settings
-from .operators import remesh
+from . import overlay, panel, preferences, runs, settings
+from .operators import remesh, show
 
 _CLASSES = (
     preferences.OrbflowPreferences,
     settings.OrbflowSettings,
     remesh.OBJECT_OT_orbflow_remesh,
+    show.OBJECT_OT_orbflow_show,
     panel.VIEW3D_PT_orbflow,
 )
 
@@ -24,12 +26,14 @@ def register() -> None:
         bpy.utils.register_class(each)
     bpy.types.Scene.orbflow = bpy.props.PointerProperty(type=settings.OrbflowSettings)
     bpy.types.VIEW3D_MT_object.append(panel.draw_menu)
+    runs.register()
     overlay.register()
 
 
 def unregister() -> None:
     """Called by Blender when the extension is switched off."""
     overlay.unregister()
+    runs.unregister()
     bpy.types.VIEW3D_MT_object.remove(panel.draw_menu)
     del bpy.types.Scene.orbflow
     for each in reversed(_CLASSES):

@@ -2,16 +2,37 @@
 """The work itself, off the main thread: no bpy in here, Blender must not be touched from there."""
 
 import threading
+import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from itertools import accumulate
 from typing import Any
 
 import orbflow_native
 
 from .artist import Artist
 from .mesh_arrays import Float, MeshArrays
+from .modifiers import Applied
 
-Listener = Callable[[str, float], None]
+# Before this much has passed, and this share is done, nobody can say how long the rest takes.
+_LEAST_S = 1.0
+_LEAST_SHARE = 0.03
+# How fast what was told of the time left follows what is known now: much slower and it stands when
+# a step is slow, much faster and it jumps.
+_FOLLOWS_S = 3.0
+
+
+@dataclass(frozen=True)
+class Stage:
+    """How far a run is: the share of all, and the step of which of its objects."""
+
+    share: float
+    step: str
+    #: Counted from 0.
+    at: int
+
+
+Listener = Callable[[Stage], None]
 
 
 @dataclass(frozen=True)
@@ -25,6 +46,8 @@ class Task:
     density: Float | None = None
     #: More objects that get its result: they share its mesh and have its scale.
     others: tuple[str, ...] = ()
+    #: How modifiers have made the arrays of the object's own mesh.
+    applied: Applied | None = None
 
 
 @dataclass(frozen=True)
@@ -41,6 +64,10 @@ class Failed:
 
     name: str
     error: str
+    #: Its parts as the core tells of them, each with its reasons; none where it tells of no part.
+    kept: list[dict[str, Any]] = field(default_factory=list)
+    #: None where it could not even be read.
+    task: Task | None = None
 
 
 Outcome = Done | Failed
@@ -56,23 +83,36 @@ def remesh(
 ) -> list[Outcome]:
     """Remeshes one task after the other; a task that fails does not stop the others."""
     outcomes: list[Outcome] = []
+    bounds = _bounds(tasks, settings["faces"])
     for i, task in enumerate(tasks):
         if isinstance(task, Failed):
             outcomes.append(task)
             continue
 
         def listen(step: str, share: float, i: int = i) -> None:
-            listener(step, (i + share) / len(tasks))
+            listener(Stage(bounds[i] + share * (bounds[i + 1] - bounds[i]), step, i))
 
         try:
             result = _remesh_one(task, settings, listen, cancel)
         except orbflow_native.Cancelled:
             raise
+        except orbflow_native.InputError as error:
+            outcomes.append(Failed(task.name, str(error), getattr(error, "kept", []), task))
         except Exception as error:
-            outcomes.append(Failed(task.name, str(error) or type(error).__name__))
+            text = str(error) or type(error).__name__
+            outcomes.append(Failed(task.name, text, task=task))
         else:
             outcomes.append(Done(task, result))
     return outcomes
+
+
+def _bounds(tasks: list[Todo], n_wanted: int) -> list[float]:
+    """Which share of the work is done before each task, and after the last."""
+    work = [
+        0 if isinstance(each, Failed) else n_wanted + len(each.arrays.loop_start) for each in tasks
+    ]
+    done = list(accumulate(work, initial=0))
+    return [each / max(done[-1], 1) for each in done]
 
 
 def _remesh_one(
@@ -82,6 +122,8 @@ def _remesh_one(
     cancel: orbflow_native.CancelToken,
 ) -> orbflow_native.Remeshed:
     arrays, artist = task.arrays, task.artist
+    if task.applied and task.applied.stack.half:
+        settings = settings | {"mirror": "xyz"[task.applied.stack.half.axis]}
     return orbflow_native.remesh(
         arrays.positions,
         arrays.loop_start,
@@ -98,20 +140,43 @@ def _remesh_one(
     )
 
 
+class Clock:
+    """Tells how long a run still takes, from what it has done in the time that has passed."""
+
+    def __init__(self, now: Callable[[], float] = time.monotonic) -> None:
+        """Starts with the run; `now` tells the time in seconds."""
+        self._now = now
+        self._start = self._asked = now()
+        self._end: float | None = None
+
+    def left_s(self, share: float) -> float | None:
+        """About how many seconds are left after a share; none where nobody can say yet."""
+        now = self._now()
+        passed = now - self._start
+        if passed < _LEAST_S or share < _LEAST_SHARE:
+            return None
+        end = self._start + passed / share
+        if self._end is not None:
+            follow = min((now - self._asked) / _FOLLOWS_S, 1.0)
+            end = self._end + follow * (end - self._end)
+        self._end, self._asked = end, now
+        return max(end - now, 0.0)
+
+
 @dataclass
 class Job:
     """A run on a thread of its own, watched from a modal operator."""
 
     tasks: list[Todo]
     settings: dict[str, Any]
-    step: str = "starting"
-    share: float = 0.0
+    stage: Stage = Stage(0.0, "starting", 0)
     is_cancelled: bool = False
     outcomes: list[Outcome] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         """Starts the thread."""
         self._cancel = orbflow_native.CancelToken()
+        self._clock = Clock()
         self._thread = threading.Thread(target=self._run, name="orbflow", daemon=True)
         self._thread.start()
 
@@ -124,6 +189,10 @@ class Job:
         """Whether `outcomes` or `is_cancelled` is final."""
         return not self._thread.is_alive()
 
+    def left_s(self) -> float | None:
+        """About how many seconds are left; none where nobody can say yet."""
+        return self._clock.left_s(self.stage.share)
+
     def wait(self) -> None:
         """Waits until the thread has ended."""
         self._thread.join()
@@ -134,5 +203,10 @@ class Job:
         except orbflow_native.Cancelled:
             self.is_cancelled = True
 
-    def _hear(self, step: str, share: float) -> None:
-        self.step, self.share = step, share
+    def _hear(self, stage: Stage) -> None:
+        # What belongs to no step has no name.
+        self.stage = replace(stage, step=stage.step or self.stage.step)
+
+
+# The job of the modal operator: the status bar and the panel draw it.
+running: list[Job] = []

@@ -19,7 +19,7 @@ from gpu_extras.batch import batch_for_shader
 from mathutils import Matrix
 from numpy.typing import NDArray
 
-from . import attributes, panel
+from . import attributes, runs
 
 Colour = tuple[float, float, float, float]
 
@@ -41,6 +41,9 @@ _WIDTH_PX = 1.5
 _NEARER = {"crosses": 0.003, "irregular": 0.004}
 
 _handles: list[object] = []
+_TICKS = ("show_irregular", "show_crosses")
+# What was ticked before the last undo, by the name of the scene.
+_ticked: dict[str, list[bool]] = {}
 
 
 @dataclass(frozen=True)
@@ -87,6 +90,7 @@ def register() -> None:
     """Starts drawing; without a window there is nothing to draw on."""
     for handlers in _changes():
         handlers.append(_forget)
+    bpy.app.handlers.undo_pre.append(_note_ticks)
     if not bpy.app.background:
         space = bpy.types.SpaceView3D
         _handles.append(space.draw_handler_add(_draw, (), "WINDOW", "POST_VIEW"))
@@ -96,6 +100,7 @@ def unregister() -> None:
     """Stops drawing."""
     for handlers in _changes():
         handlers.remove(_forget)
+    bpy.app.handlers.undo_pre.remove(_note_ticks)
     _kept.forget()
     while _handles:
         bpy.types.SpaceView3D.draw_handler_remove(_handles.pop(), "WINDOW")
@@ -115,6 +120,17 @@ def _forget(_scene: object, depsgraph: bpy.types.Depsgraph | None = None) -> Non
         _kept.forget()
 
 
+@bpy.app.handlers.persistent
+def _note_ticks(scene: bpy.types.Scene, _depsgraph: object = None) -> None:
+    _ticked[scene.name] = [getattr(scene.orbflow, name) for name in _TICKS]
+
+
+def keep_ticks(scene: bpy.types.Scene) -> None:
+    """Ticks again what the redo panel has unticked: it undoes all that came after the run."""
+    for name, is_ticked in zip(_TICKS, _ticked.get(scene.name, []), strict=False):
+        setattr(scene.orbflow, name, is_ticked)
+
+
 def irregular(mesh: bpy.types.Mesh) -> Irregular:
     """Finds the irregular vertices: not of valence 4 among quads, not of 6 among triangles."""
     n = len(mesh.vertices)
@@ -131,7 +147,7 @@ def irregular(mesh: bpy.types.Mesh) -> Irregular:
 def figures(thing: bpy.types.Object, what: str) -> list[Figure]:
     """What to draw of an object: its irregular vertices or the crosses of its field."""
     if what == "crosses":
-        crosses = panel.last_crosses(thing)
+        crosses = runs.last_crosses(thing)
         if crosses is None:
             return []
         lines = cross_lines(crosses, len(thing.data.polygons))

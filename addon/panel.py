@@ -2,43 +2,22 @@
 """The sidebar panel and the menu entry."""
 
 import textwrap
-from dataclasses import dataclass
 from typing import Any
 
 import bpy
-import numpy as np
-from numpy.typing import NDArray
 
-from . import settings
+from . import runs, settings, words
+from .job import running
+from .runs import Left, Line
 
-
-@dataclass(frozen=True)
-class _Last:
-    """What is kept of a run: in this session alone, not in the file."""
-
-    report: dict[str, Any]
-    crosses: NDArray[np.float32]
-
-
-# What says which mesh a mesh is: how many vertices and faces it has, and where some vertices are.
-_Print = tuple[int, int, tuple[float, ...]]
-# Of the last runs, by the mesh that each has made: undo and redo, another name for an object and a
-# copy of it keep what belongs to them.
-_last: dict[_Print, _Last] = {}
-# As many runs are kept as Blender keeps undo steps by default; a run is a tenth of a megabyte.
-_N_KEPT = 32
-# At most so many vertices are looked at on every redraw, which takes less than a millisecond.
-_N_LOOKED_AT = 200
 # How much of a panel's width there is for no letter of a sentence, and how wide a letter is.
 _MARGIN_PX = 70.0
 _LETTER_PX = 6.0
-# What cleaning drops, of one and of many.
-_CLEANED = (
-    ("n_isolated", ("loose vertex", "loose vertices")),
-    ("n_degenerate", ("face of fewer than 3 corners", "faces of fewer than 3 corners")),
-    ("n_duplicates", ("face that is there twice", "faces that are there twice")),
-    ("n_doubled", ("triangle back to back with another", "triangles back to back with others")),
-)
+# The share of the width that a sentence has beside a button.
+_BESIDE = 0.74
+# So many objects have a line of their own; a list that is longer takes long to draw and to read.
+_MOST_LINES = 40
+_ICONS = {"refused": "CANCEL", "warned": "ERROR", "done": "CHECKMARK"}
 # What stands in an empty field.
 _PLACEHOLDERS = {"density": "Group or Color"}
 _ROWS = (
@@ -55,7 +34,7 @@ _ROWS = (
 
 
 class VIEW3D_PT_orbflow(bpy.types.Panel):
-    """Settings, the button, and the score of the last run."""
+    """Settings, the button, what was left and why, and the score of the last run."""
 
     bl_label = "Orbflow"
     bl_category = "Orbflow"
@@ -67,17 +46,25 @@ class VIEW3D_PT_orbflow(bpy.types.Panel):
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
-        for name in settings.NAMES:
-            layout.prop(context.scene.orbflow, name, placeholder=_PLACEHOLDERS.get(name, ""))
-        _button(layout, context)
+        _draw_settings(layout, context.scene.orbflow)
+        if running:
+            # Under the mouse a button that is grey once stays so: Blender draws it as it was.
+            layout.label(text="At work: ESC stops it", icon="MOD_REMESH")
+        else:
+            _button(layout, context)
+        n_letters = _n_letters(context)
+        if lines := runs.lines():
+            _draw_lines(layout.box().column(align=True), lines, n_letters)
+        if left := runs.left_of(context.object):
+            _draw_left(layout.box().column(align=True), context.object.name, left, context)
         column = layout.column(heading="Show")
         column.prop(context.scene.orbflow, "show_irregular")
-        last = _last_of(context.object)
+        last = runs.last_of(context.object)
         crosses = column.row()
         crosses.active = last is not None and len(last.crosses) > 0
         crosses.prop(context.scene.orbflow, "show_crosses")
         if last:
-            _draw_score(layout.box().column(align=True), last.report, _n_letters(context))
+            _draw_score(layout.box().column(align=True), last.report, n_letters)
 
 
 def draw_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
@@ -91,38 +78,11 @@ def _button(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     settings.copy(context.scene.orbflow, button)
 
 
-def remember(thing: bpy.types.Object, report: dict[str, Any], crosses: NDArray[np.float32]) -> None:
-    """Keeps what the panel and the overlay show of the run that made an object's mesh."""
-    key = _print_of(thing.data)
-    _last.pop(key, None)
-    _last[key] = _Last(report, crosses)
-    while len(_last) > _N_KEPT:
-        del _last[next(iter(_last))]
-
-
-def last_report(name: str) -> dict[str, Any] | None:
-    """The report of the run in this session that made an object what it is now."""
-    last = _last_of(bpy.data.objects.get(name))
-    return last and last.report
-
-
-def last_crosses(thing: bpy.types.Object) -> NDArray[np.float32] | None:
-    """The crosses of the field of what an object is now, as places and arms (N, 3, 3)."""
-    last = _last_of(thing)
-    return last and last.crosses
-
-
-def _last_of(thing: bpy.types.Object | None) -> _Last | None:
-    """What is kept of what an object is now: none where its mesh was edited since."""
-    if thing is None or thing.type != "MESH":
-        return None
-    return _last.get(_print_of(thing.data))
-
-
-def _print_of(mesh: bpy.types.Mesh) -> _Print:
-    n = len(mesh.vertices)
-    looked_at = (mesh.vertices[i].co for i in range(0, n, n // _N_LOOKED_AT + 1))
-    return n, len(mesh.polygons), tuple(x for place in looked_at for x in place)
+def _draw_settings(layout: bpy.types.UILayout, wanted: settings.Settings) -> None:
+    for name in settings.NAMES:
+        row = layout.row()
+        row.active = settings.is_of_use(wanted, name)
+        row.prop(wanted, name, placeholder=_PLACEHOLDERS.get(name, ""))
 
 
 def redraw_status_bar(context: bpy.types.Context) -> None:
@@ -138,82 +98,11 @@ def redraw_sidebars(context: bpy.types.Context) -> None:
                 area.tag_redraw()
 
 
-def sentence(reports: list[dict[str, Any]]) -> str:
-    """A run in one line; Blender joins lines without a space."""
-    before, after = (
-        sum(report[side]["n_faces"] for report in reports) for side in ("input", "output")
-    )
-    meshes = f"{len(reports)} meshes: " if len(reports) > 1 else ""
-    told = "".join(f"; {each}" for each in exceptions(reports))
-    return f"{meshes}{before:,} faces became {after:,}{told}"
-
-
-def exceptions(reports: list[dict[str, Any]]) -> list[str]:
-    """In words what is otherwise than was asked for."""
-    lost = ", ".join(sorted({each for report in reports for each in report["lost"]}))
-    told = [_without_flow(reports), _without_mirror(reports), _without_marks(reports)]
-    told += [_without_network(reports), f"not carried over: {lost}" if lost else ""]
-    told += [_cleaned(reports)]
-    return [each for each in told if each]
-
-
-def _cleaned(reports: list[dict[str, Any]]) -> str:
-    """What cleaning has dropped before the run."""
-    counts = [
-        (sum(report["clean"][name] for report in reports), *words) for name, words in _CLEANED
-    ]
-    dropped = ", ".join(f"{n:,} {many if n > 1 else one}" for n, one, many in counts if n)
-    return f"left out: {dropped}" if dropped else ""
-
-
-def _without_marks(reports: list[dict[str, Any]]) -> str:
-    """Which share of what was left on edges is on no edge of the result."""
-    shares = [report["carried"]["length_pct"] for report in reports if report["carried"]]
-    gone = 100 - min(shares, default=100)
-    # Chords are shorter than what they stand for.
-    return f"{gone:.0f} % of the marks of edges are gone: no edge lies there" if gone > 5 else ""
-
-
-def _without_flow(reports: list[dict[str, Any]]) -> str:
-    """Which parts got the quad sphere because their quads could not flow, and why the first."""
-    return _refused(reports, "flow", "quad sphere instead of flow")
-
-
-def _without_mirror(reports: list[dict[str, Any]]) -> str:
-    """Which parts could not be made symmetric, and why the first."""
-    return _refused(reports, "mirrored", "not symmetric")
-
-
-def _without_network(reports: list[dict[str, Any]]) -> str:
-    """Which parts got the solver's map because a proposal was of no use."""
-    parts = _parts(reports)
-    given_up = [part for part in parts if part["embedding"]["repair"]["fell_back_to_solver"]]
-    if not given_up:
-        return ""
-    of = _of_parts(given_up, parts)
-    return f"solver instead of network{of}: the proposal was beyond repair"
-
-
-def _refused(reports: list[dict[str, Any]], what: str, words: str) -> str:
-    """In how many parts something was refused, and why in the first; empty where in none."""
-    parts = _parts(reports)
-    refused = [part for part in parts if (part[what] or {}).get("status") == "refused"]
-    if not refused:
-        return ""
-    return f"{words}{_of_parts(refused, parts)}: {refused[0][what]['reason']}"
-
-
-def _parts(reports: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    return [part for report in reports for part in report["parts"]]
-
-
-def _of_parts(some: list[dict[str, Any]], parts: list[dict[str, Any]]) -> str:
-    return f" in {len(some)} of {len(parts)} parts" if len(parts) > 1 else ""
-
-
 def rows(report: dict[str, Any]) -> list[tuple[str, str]]:
     """The score as words and values; what does not apply is left out."""
     figures = report["output"] | (report["score"] or {})
+    if not figures["quads_pct"]:
+        del figures["quads_pct"]
     score = [
         (words, form.format(figures[name]))
         for words, name, form in _ROWS
@@ -248,17 +137,60 @@ def _proposal(embedding: dict[str, Any]) -> list[tuple[str, str]]:
     ]
 
 
-def _n_letters(context: bpy.types.Context) -> int:
-    """How many letters fit beside the icon in the panel as wide as it is."""
+def _n_letters(context: bpy.types.Context, share: float = 1.0) -> int:
+    """How many letters fit beside an icon in a share of the panel as wide as it is."""
     scale = context.preferences.system.ui_scale
-    return max(10, int((context.region.width / scale - _MARGIN_PX) / _LETTER_PX))
+    return max(10, int((share * context.region.width / scale - _MARGIN_PX) / _LETTER_PX))
+
+
+def _draw_lines(column: bpy.types.UILayout, lines: list[Line], n_letters: int) -> None:
+    """What became of every object of the last run, the worst first."""
+    column.label(text=words.summary([line.state for line in lines]))
+    ordered = sorted(lines, key=lambda line: list(_ICONS).index(line.state))
+    for line in ordered[:_MOST_LINES]:
+        row = column.row()
+        row.alignment = "LEFT"
+        text = f"{line.name}: {line.text}"
+        button = row.operator(
+            "object.orbflow_show",
+            text=textwrap.shorten(text, n_letters, placeholder=" …"),
+            icon=_ICONS[line.state],
+            emboss=False,
+        )
+        button.name = line.name
+    if len(lines) > _MOST_LINES:
+        column.label(text=f"and {len(lines) - _MOST_LINES:,} more", icon="BLANK1")
+
+
+def _draw_left(
+    column: bpy.types.UILayout, name: str, left: Left, context: bpy.types.Context
+) -> None:
+    """Why an object, or parts of it, were left as they were, each with the button Show."""
+    title = f"{name} was left as it was" if left.error else "Parts were left as they were"
+    _draw_text(column, title, "CANCEL" if left.error else "ERROR", _n_letters(context))
+    if left.error and not left.complaints:
+        _draw_text(column, left.error, "BLANK1", _n_letters(context))
+    for i, complaint in enumerate(left.complaints):
+        share = _BESIDE if complaint.spot else 1.0
+        row = column.split(factor=share)
+        _draw_text(row.column(align=True), complaint.words, "DOT", _n_letters(context, share))
+        if complaint.spot:
+            button = row.operator("object.orbflow_show", text="Show")
+            button.name, button.row = name, i
+
+
+def _draw_text(column: bpy.types.UILayout, text: str, icon: str, n_letters: int) -> None:
+    """A sentence in as many lines as it needs."""
+    for i, line in enumerate(textwrap.wrap(text, n_letters)):
+        column.label(text=line, icon="BLANK1" if i else icon)
 
 
 def _draw_score(column: bpy.types.UILayout, report: dict[str, Any], n_letters: int) -> None:
-    for text in exceptions([report]):
-        for i, line in enumerate(textwrap.wrap(text, n_letters)):
-            column.label(text=line, icon="BLANK1" if i else "INFO")
-    for words, value in rows(report):
+    for text in words.warnings(report):
+        _draw_text(column, text, "ERROR", n_letters)
+    for text in words.exceptions(report):
+        _draw_text(column, text, "INFO", n_letters)
+    for what, value in rows(report):
         row = column.row()
-        row.label(text=words)
+        row.label(text=what)
         row.label(text=value)

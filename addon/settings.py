@@ -2,6 +2,7 @@
 """What the user can set; the operator and the panel share one list of properties."""
 
 # pyright: reportInvalidTypeForm=false
+import inspect
 import math
 from typing import Any
 
@@ -30,12 +31,20 @@ _MARKS = (
     ("CREASE", "Crease", "Edges with a subdivision crease"),
     ("SEAM", "Seam", "Edges marked as seams of the UV map"),
 )
+_SMALL_PARTS = (
+    ("KEEP", "Keep", "They stay as they were"),
+    ("DROP", "Leave Out", "The result is without them"),
+)
 _MIRRORS = (
     ("OFF", "Off", "The two sides of a mesh need not be alike"),
     ("AUTO", "Automatic", "Across the first axis, if any, in which every vertex has its image"),
     ("X", "X", "Across X; a mesh that is not symmetric is made so from the side of positive X"),
     ("Y", "Y", "Across Y; a mesh that is not symmetric is made so from the side of positive Y"),
     ("Z", "Z", "Across Z; a mesh that is not symmetric is made so from the side of positive Z"),
+)
+_MIRROR_MODIFIERS = (
+    ("WHOLE", "Whole", "A Mirror modifier goes into the result and leaves the stack"),
+    ("HALF", "Half", "The result is one half, which the Mirror modifier makes whole as before"),
 )
 _PREDICTORS = (
     ("AUTO", "Auto", "Network for more than some 10,000 faces, where it saves time, else Solver"),
@@ -70,9 +79,13 @@ def _density(**more: object) -> Any:  # noqa: ANN401
     )
 
 
+# While the operator gives the panel its settings there is no undo step but its own.
+_copying: list[bool] = []
+
+
 def _push_undo(_settings: object, _context: bpy.types.Context) -> None:
     """Makes an undo step, as Blender does for all fields but those that search."""
-    if not bpy.app.background and bpy.ops.ed.undo_push.poll():
+    if not (bpy.app.background or _copying) and bpy.ops.ed.undo_push.poll():
         bpy.ops.ed.undo_push(message="Density")
 
 
@@ -124,6 +137,51 @@ class Settings:
         items=_MIRRORS,
         default="AUTO",
     )
+    use_modifiers: BoolProperty(
+        name="Apply Modifiers",
+        description=(
+            "Remesh what is seen: modifiers that make geometry, such as Mirror and Subdivision, go "
+            "into the result and leave the stack; those that follow a pose or time stay"
+        ),
+        default=True,
+    )
+    mirror_modifier: EnumProperty(
+        name="Mirror Modifier",
+        description="What becomes of a mesh that a Mirror modifier makes whole",
+        items=_MIRROR_MODIFIERS,
+        default="WHOLE",
+    )
+    small_parts: EnumProperty(
+        name="Small Parts",
+        description="What becomes of parts that are too small for their share of the faces",
+        items=_SMALL_PARTS,
+    )
+    small_size: FloatProperty(
+        name="Small Below",
+        description=(
+            "Parts that are smaller than this share of the whole mesh are small too; 0: only those "
+            "that are too small for the faces that they would get"
+        ),
+        default=0.0,
+        min=0.0,
+        max=100.0,
+        subtype="PERCENTAGE",
+    )
+    use_weld: BoolProperty(
+        name="Weld Seams",
+        description="Close gaps between open edges that lie on each other, as imported seams do",
+        default=True,
+    )
+    weld: FloatProperty(
+        name="Weld Within",
+        description="Open edges that are no farther apart than this share of the mesh's size",
+        default=0.001,
+        min=0.0,
+        max=1.0,
+        precision=4,
+        step=0.01,
+        subtype="PERCENTAGE",
+    )
     predictor: EnumProperty(
         name="Predictor",
         description="Who proposes where each vertex lies on the sphere",
@@ -145,9 +203,13 @@ class Settings:
     )
 
 
+# Which settings only quads that flow heed.
+_OF_FLOW = {"follow_shape", "adaptivity", "density", "mirror"}
 NAMES = tuple(Settings.__annotations__)
-# Settings that name data of the mesh.
-_OF_MESH = {"density", "marked_edges"}
+# Settings that say what of an object is read.
+_OF_MESH = {"density", "marked_edges", "mirror_modifier", "use_modifiers"}
+# Settings that are one with another in the core.
+_IN_OTHERS = {"use_weld"}
 
 
 class OrbflowSettings(bpy.types.PropertyGroup, Settings):
@@ -174,21 +236,39 @@ class OrbflowSettings(bpy.types.PropertyGroup, Settings):
 
 
 def for_core(source: Settings) -> dict[str, Any]:
-    """The settings as keywords of `orbflow_native.remesh`, but for those that name data."""
-    values = {name: _value(getattr(source, name)) for name in NAMES if name not in _OF_MESH}
-    return values | {
+    """The settings as keywords of `orbflow_native.remesh`, but for those that say what is read."""
+    names = [name for name in NAMES if name not in _OF_MESH | _IN_OTHERS]
+    values = {name: _value(getattr(source, name)) for name in names}
+    given = values | {
         "sharp_angle": math.degrees(source.sharp_angle),
+        # Blender keeps fewer digits; those beyond are not what was asked for.
+        "weld": float(f"{source.weld / 100:.6g}") if source.use_weld else None,
         "mirror": source.mirror.lower(),
         "predictor": source.predictor.lower(),
         "weights": preferences.weights() if source.predictor != "SOLVER" else None,
         "n_crosses": N_CROSSES,
     }
+    known = inspect.signature(orbflow_native.remesh).parameters
+    return {name: value for name, value in given.items() if name in known}
+
+
+def is_of_use(source: Settings, name: str) -> bool:
+    """Whether a setting changes anything with the others as they are."""
+    if name in _OF_FLOW:
+        return source.kind == "QUADS" and source.primitive in {"AUTO", "FLOW"}
+    if name == "mirror_modifier":
+        return source.use_modifiers
+    return name != "weld" or source.use_weld
 
 
 def copy(source: Settings, target: object) -> None:
-    """Gives `target`, an operator's properties, the settings of `source`."""
-    for name in NAMES:
-        setattr(target, name, getattr(source, name))
+    """Gives `target`, the properties of an operator or a scene, the settings of `source`."""
+    _copying.append(True)
+    try:
+        for name in NAMES:
+            setattr(target, name, getattr(source, name))
+    finally:
+        _copying.clear()
 
 
 def _value(value: str | float) -> str | float | None:

@@ -112,7 +112,7 @@ def test_the_object_keeps_what_is_the_artists(open_fixture: Open) -> None:
     thing.data.id_properties_ui("wear").update(max=2.0, description="How worn it is")
     thing.data.use_mirror_x, thing.data.remesh_voxel_size = True, 0.25
     thing.data.use_auto_texspace, thing.data.texspace_size = False, (1, 2, 3)
-    press.orbflow_remesh(faces=600)
+    press.orbflow_remesh(faces=600, use_modifiers=False)
     assert (thing.name, thing.data.name, thing.parent, thing.matrix_world) == kept
     assert [(each.name, each.type) for each in thing.modifiers] == modifiers
     assert list(thing.data.materials) == materials
@@ -243,7 +243,7 @@ def test_the_thread_behind_the_button_does_the_same_as_the_blocking_twin(
     press.orbflow_remesh()
     result = addon("mesh_arrays").read(first.data)
     assert np.array_equal(outcome.result.positions, result.positions)
-    assert job.share == 1.0
+    assert job.stage.share == 1.0
 
 
 def test_the_extension_can_be_switched_off_and_on(open_fixture: Open) -> None:
@@ -258,14 +258,14 @@ def test_the_extension_can_be_switched_off_and_on(open_fixture: Open) -> None:
 def test_a_fallback_is_named_in_the_panel_and_the_info_line(open_fixture: Open) -> None:
     first = open_fixture("03")
     press.orbflow_remesh(faces=200)
-    panel = addon("panel")
-    report = panel.last_report(first.name)
-    assert panel.exceptions([report]) == []
+    panel, words = addon("panel"), addon("words")
+    report = addon("runs").last_report(first.name)
+    assert words.exceptions(report) == []
     refused = {"status": "refused", "reason": "no whole periods: none"}
     report["parts"][0]["flow"] = refused
     told = "quad sphere instead of flow: no whole periods: none"
-    assert panel.exceptions([report]) == [told]
-    assert panel.sentence([report]).endswith(f"; {told}")
+    assert words.exceptions(report) == [told]
+    assert words.sentence(report).endswith(f"; {told}")
     shown: list[str] = []
 
     class Column:
@@ -289,8 +289,8 @@ def test_a_symmetric_mesh_stays_so_unasked_and_the_panel_says_across_what(
         thing = bpy.context.object
         select(thing)
         assert press.orbflow_remesh(faces=300, mirror=mirror) == {"FINISHED"}
-        panel = addon("panel")
-        shown[mirror] = dict(panel.rows(panel.last_report(thing.name)))
+        report = addon("runs").last_report(thing.name)
+        shown[mirror] = dict(addon("panel").rows(report))
         places = {tuple(np.round(vertex.co, 5)) for vertex in thing.data.vertices}
         images = {(-x + 0.0, y, z) for x, y, z in places}
         assert (places == images) is (mirror == "AUTO")

@@ -1,8 +1,6 @@
 """The marks on irregular vertices; drawing itself needs a window."""
 
 from pathlib import Path
-from types import SimpleNamespace
-from typing import Any
 
 import bpy
 import numpy as np
@@ -10,6 +8,7 @@ import orbflow_native
 import pytest
 from mathutils import Matrix
 from shapes import ball
+from sidebar import drawn
 from test_operator import Open, addon, press
 
 
@@ -72,9 +71,9 @@ def lengths(crosses: np.ndarray) -> np.ndarray:
 
 def test_the_field_is_kept_for_the_session_and_lies_on_the_mesh(open_fixture: Open) -> None:
     spot = open_fixture("01")
-    assert addon("panel").last_crosses(spot) is None
+    assert addon("runs").last_crosses(spot) is None
     press.orbflow_remesh(faces=500)
-    crosses = addon("panel").last_crosses(spot)
+    crosses = addon("runs").last_crosses(spot)
     assert 2000 < len(crosses) <= addon("settings").N_CROSSES
     low, high = (np.array(spot.bound_box).min(0) - 0.05, np.array(spot.bound_box).max(0) + 0.05)
     assert ((crosses[:, 0] > low) & (crosses[:, 0] < high)).all()
@@ -109,16 +108,16 @@ def test_crosses_fill_the_surface_and_do_not_meet(n_faces: int, n_shown: int, ar
 def test_no_field_is_shown_of_a_mesh_that_has_changed_or_does_not_flow(open_fixture: Open) -> None:
     first = open_fixture("03")
     press.orbflow_remesh(faces=200, kind="TRIANGLES")
-    assert len(addon("panel").last_crosses(first)) == 0
+    assert len(addon("runs").last_crosses(first)) == 0
     press.orbflow_remesh(faces=200)
-    assert len(addon("panel").last_crosses(first)) > 100
+    assert len(addon("runs").last_crosses(first)) > 100
     first.data = bpy.data.meshes.new("Other")
     assert addon("overlay").figures(first, "crosses") == []
 
 
 def test_what_is_kept_of_a_run_belongs_to_the_mesh_it_made(open_fixture: Open) -> None:
     first = open_fixture("03")
-    panel, made = addon("panel"), []
+    runs, made = addon("runs"), []
     for _ in range(2):
         press.orbflow_remesh(faces=200, primitive="QUAD_SPHERE")
         made.append(first.data.copy())
@@ -126,25 +125,25 @@ def test_what_is_kept_of_a_run_belongs_to_the_mesh_it_made(open_fixture: Open) -
     assert len(made[0].polygons) == len(made[1].polygons)
     for mesh, n_faces in zip(made, (1280, len(made[0].polygons)), strict=True):
         first.data = mesh
-        assert panel.last_report(first.name)["input"]["n_faces"] == n_faces
+        assert runs.last_report(first.name)["input"]["n_faces"] == n_faces
     press.orbflow_remesh(faces=200)
     first.name = "Renamed"
-    assert len(panel.last_crosses(first)) > 100
+    assert len(runs.last_crosses(first)) > 100
     # Applying a scale moves the surface away from the crosses.
     first.data.transform(Matrix.Scale(2, 4))
-    assert panel.last_crosses(first) is None
+    assert runs.last_crosses(first) is None
 
 
 def test_only_the_newest_runs_are_kept(open_fixture: Open) -> None:
     first = open_fixture("03")
-    panel = addon("panel")
+    runs = addon("runs")
     press.orbflow_remesh(faces=200)
-    report = panel.last_report("First")
-    for i in range(2 * panel._N_KEPT):
+    report = runs.last_report("First")
+    for i in range(2 * runs._N_KEPT):
         first.data.vertices[0].co.x = i
-        panel.remember(first, report, np.empty((0, 3, 3), np.float32))
-    assert len(panel._last) == panel._N_KEPT
-    assert len(panel.last_crosses(first)) == 0
+        runs.remember(first, report, np.empty((0, 3, 3), np.float32))
+    assert len(runs._last) == runs._N_KEPT
+    assert len(runs.last_crosses(first)) == 0
 
 
 def test_crosses_are_told_only_when_asked_for() -> None:
@@ -189,44 +188,6 @@ def test_what_is_drawn_is_kept_until_the_mesh_changes(open_fixture: Open) -> Non
     press.orbflow_remesh(faces=200)
     get()
     assert len(made) == 3
-
-
-class Layout:
-    """A part of a panel that keeps what is drawn in it."""
-
-    def __init__(self, drawn: list[tuple[str, "Layout"]]) -> None:
-        self.drawn = drawn
-        self.active = True
-
-    def part(self, **_how: object) -> "Layout":
-        return Layout(self.drawn)
-
-    column = row = box = part
-
-    def prop(self, _of: object, name: str, **_how: object) -> None:
-        self.drawn.append((name, self))
-
-    def label(self, text: str, icon: str = "NONE") -> None:
-        self.drawn.append((f"{icon} {text}", self))
-
-    def operator(self, name: str, icon: str) -> SimpleNamespace:
-        self.drawn.append((f"{icon} {name}", self))
-        return SimpleNamespace()
-
-
-def drawn(thing: bpy.types.Object, width: int = 292) -> list[tuple[str, Layout]]:
-    """What the panel draws of an object in a sidebar of a width."""
-    preferences = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))
-    context: Any = SimpleNamespace(
-        scene=bpy.context.scene,
-        object=thing,
-        region=SimpleNamespace(width=width),
-        preferences=preferences,
-    )
-    layout = Layout([])
-    panel: Any = SimpleNamespace(layout=layout)
-    addon("panel").VIEW3D_PT_orbflow.draw(panel, context)
-    return layout.drawn
 
 
 def test_the_box_for_crosses_is_grey_while_there_is_no_field(open_fixture: Open) -> None:

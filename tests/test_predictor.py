@@ -116,9 +116,9 @@ def test_weights_that_nothing_reads_and_missing_files_are_said(tmp_path: Path) -
 def test_the_add_on_needs_no_file_and_the_panel_tells_what_was_proposed(open_fixture: Open) -> None:
     open_fixture("03")
     assert press.orbflow_remesh(predictor="NETWORK", faces=200) == {"FINISHED"}
-    panel = addon("panel")
-    report = panel.last_report("First")
-    assert panel.exceptions([report]) == []
+    panel, words = addon("panel"), addon("words")
+    report = addon("runs").last_report("First")
+    assert words.exceptions(report) == []
     shown = dict(panel.rows(report))
     proposal = report["embedding"]["proposal"]
     assert shown["Proposed by"] == "network"
@@ -129,9 +129,9 @@ def test_the_add_on_needs_no_file_and_the_panel_tells_what_was_proposed(open_fix
     assert shown["Relaxations"] == f"{report['embedding']['n_relaxations']:,}"
     report["parts"][0]["embedding"]["repair"]["fell_back_to_solver"] = True
     told = "solver instead of network: the proposal was beyond repair"
-    assert panel.exceptions([report]) == [told]
+    assert words.exceptions(report) == [told]
     assert press.orbflow_remesh(predictor="SOLVER", faces=200) == {"FINISHED"}
-    assert "Proposed by" not in dict(panel.rows(panel.last_report("First")))
+    assert "Proposed by" not in dict(panel.rows(addon("runs").last_report("First")))
 
 
 def test_the_file_in_the_preferences_is_used_and_wrong_ones_change_nothing(
@@ -154,9 +154,8 @@ def test_the_file_in_the_preferences_is_used_and_wrong_ones_change_nothing(
         assert "bytes, but" in error()
         path.write_bytes(weights)
         assert press.orbflow_remesh(predictor="NETWORK", faces=200) == {"FINISHED"}
-        panel = addon("panel")
-        report = panel.last_report("First")
+        report = addon("runs").last_report("First")
         assert report["embedding"]["predictor"] == "network"
-        assert dict(panel.rows(report))["Weights"] == report["embedding"]["weights"]["sum"]
+        assert dict(addon("panel").rows(report))["Weights"] == report["embedding"]["weights"]["sum"]
     finally:
         preferences.weights = ""

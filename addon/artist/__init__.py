@@ -66,11 +66,23 @@ def _lost(mesh: bpy.types.Mesh) -> list[str]:
 
 
 def _unbound(thing: bpy.types.Object) -> list[str]:
-    return [f"binding of modifier {each.name}" for each in thing.modifiers if _is_bound(each)]
+    bound = [f"binding of modifier {each.name}" for each in thing.modifiers if _is_bound(each)]
+    baked = [f"bake of modifier {each.name}" for each in thing.modifiers if _is_baked(each)]
+    return bound + baked
 
 
 def _is_bound(modifier: bpy.types.Modifier) -> bool:
     """Whether a modifier knows the vertices of a mesh by their numbers."""
     if modifier.type == "HOOK":
         return len(modifier.vertex_indices) > 0
+    if modifier.type in ("MESH_CACHE", "MESH_SEQUENCE_CACHE"):
+        return True
     return any(getattr(modifier, name, False) for name in ("is_bound", "is_bind"))
+
+
+def _is_baked(modifier: bpy.types.Modifier) -> bool:
+    """Whether a modifier keeps what was simulated or combed of a mesh that will be gone."""
+    if modifier.type == "PARTICLE_SYSTEM":
+        system = modifier.particle_system
+        return system.is_edited or system.point_cache.is_baked
+    return getattr(getattr(modifier, "point_cache", None), "is_baked", False)

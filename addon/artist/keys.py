@@ -66,10 +66,21 @@ def _animate(keys: bpy.types.Key, old: bpy.types.Key) -> None:
     if getattr(given, "action_slot", None) is not None:
         animation.action_slot = given.action_slot
     for driver in given.drivers:
+        # Of a key that could not be carried.
+        if not _has(keys, driver.data_path):
+            continue
         copied = animation.drivers.from_existing(src_driver=driver)
         for target in (each for read in copied.driver.variables for each in read.targets):
             if target.id == old:
                 target.id = keys
+
+
+def _has(keys: bpy.types.Key, path: str) -> bool:
+    try:
+        keys.path_resolve(path)
+    except ValueError:
+        return False
+    return True
 
 
 def _places(block: bpy.types.ShapeKey) -> NDArray[np.float32]:

@@ -1,21 +1,30 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The button: Object > Orbflow Remesh."""
 
+from dataclasses import replace
 from typing import Any
 
 import bpy
 import numpy as np
 import orbflow_native
 
-from .. import artist, density, mesh_arrays, panel, settings
-from ..job import Done, Failed, Job, Outcome, Task, Todo, remesh
-from ..mesh_arrays import MeshArrays
+from .. import (
+    artist,
+    density,
+    events,
+    mesh_arrays,
+    modifiers,
+    outcomes,
+    overlay,
+    panel,
+    runs,
+    settings,
+    words,
+)
+from ..job import Done, Failed, Job, Outcome, Task, Todo, remesh, running
+from ..outcomes import Told
 
 _TICK_S = 0.05
-
-# The job of the modal operator, for the progress bar. Blender crashes when the status bar is given
-# a new function on every tick, so that one function is set once and reads this.
-_running: list[Job] = []
 
 
 class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
@@ -39,77 +48,106 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
         window_manager = context.window_manager
         window_manager.progress_begin(0.0, 1.0)
         try:
-            outcomes = remesh(
+            ended = remesh(
                 tasks,
                 settings.for_core(self),
-                lambda _, share: window_manager.progress_update(share),
+                lambda stage: window_manager.progress_update(stage.share),
                 orbflow_native.CancelToken(),
             )
         finally:
             window_manager.progress_end()
-        return self._finish(outcomes)
+        if self.options.is_repeat:
+            # The redo panel has undone the run, and with it what was set since.
+            settings.copy(self, context.scene.orbflow)
+            overlay.keep_ticks(context.scene)
+        return self._finish(ended)
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Starts the thread and stays modal until it has ended."""
         if bpy.app.background:
             return self.execute(context)
-        _running.append(Job(_tasks(context, self), settings.for_core(self)))
+        running.append(Job(_tasks(context, self), settings.for_core(self)))
         self._timer = context.window_manager.event_timer_add(_TICK_S, window=context.window)
         context.window_manager.modal_handler_add(self)
+        # Blender crashes when this is given a new function on every tick: one reads the job.
         context.workspace.status_text_set(_draw_status)
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Watches the thread; lets the user look around meanwhile, but not edit."""
-        job = _running[-1]
+        job = running[-1]
         if event.type == "ESC" and event.value == "PRESS":
             job.cancel()
         if event.type == "TIMER":
             panel.redraw_status_bar(context)
             if job.has_ended():
-                return self._end(context, job)
-        return {"PASS_THROUGH"} if _is_harmless(event) else {"RUNNING_MODAL"}
+                self._tidy(context)
+                events.wake_button(event, context.window)
+                return self._end(job)
+        return {"PASS_THROUGH"} if events.passes(event, context.window) else {"RUNNING_MODAL"}
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Blender takes the operator away, for example when another file is opened."""
-        job = _running[-1]
+        job = running[-1]
         job.cancel()
         job.wait()
         self._tidy(context)
 
-    def _end(self, context: bpy.types.Context, job: Job) -> set[str]:
-        self._tidy(context)
+    def _end(self, job: Job) -> set[str]:
         if job.is_cancelled:
             self.report({"INFO"}, "cancelled; nothing was changed")
             return {"CANCELLED"}
         return self._finish(job.outcomes)
 
     def _tidy(self, context: bpy.types.Context) -> None:
-        _running.clear()
+        running.clear()
         context.window_manager.event_timer_remove(self._timer)
         context.workspace.status_text_set(None)
+        # One that was left during the run has the empty text that drew the bar.
+        for each in bpy.data.workspaces:
+            each.status_text_set_internal(None)
         panel.redraw_sidebars(context)
 
-    def _finish(self, outcomes: list[Outcome]) -> set[str]:
+    def _finish(self, ended: list[Outcome]) -> set[str]:
         """Writes the results; the one place where errors become reports."""
-        told = [_replace(each) if isinstance(each, Done) else each for each in outcomes]
-        reports = [each for each in told if not isinstance(each, Failed)]
-        failed = [each for each in told if isinstance(each, Failed)]
-        texts = [each.error for each in failed]
-        if len(outcomes) > 1:
-            texts = [f"{each.name}: {each.error}" for each in failed]
-        if not reports:
-            self.report({"ERROR"}, "; ".join(texts))
-            return {"CANCELLED"}
-        if texts:
-            self.report({"WARNING"}, "; ".join(texts))
-        self.report({"INFO"}, panel.sentence(reports))
-        return {"FINISHED"}
+        told = [_write(each) for each in ended]
+        runs.remember_lines([line for each in told for line in each.lines] * (len(told) > 1))
+        is_done = any(each.state != "refused" for each in told)
+        for level, text in _reports(told):
+            self.report({level}, text)
+        return {"FINISHED"} if is_done else {"CANCELLED"}
+
+
+def _write(outcome: Outcome) -> Told:
+    """Replaces an object's mesh, where there is a result, and tells what became of it."""
+    if isinstance(outcome, Failed):
+        return outcomes.refused(outcome)
+    old = outcomes.before(outcome)
+    told = _replace(outcome)
+    if isinstance(told, Failed):
+        return outcomes.refused(told)
+    return outcomes.done(outcome, told, old)
+
+
+def _reports(told: list[Told]) -> list[tuple[str, str]]:
+    """What Blender is told, and how grave it is: the last is what its status bar shows."""
+    is_done = any(each.state != "refused" for each in told)
+    noted = [f"{each.lines[0].name}: {each.text}" for each in told if each.state != "done"]
+    if len(told) == 1 and is_done:
+        return [("WARNING" if told[0].is_grave else "INFO", told[0].text)]
+    if len(told) == 1:
+        return [("ERROR", noted[0])]
+    lines = [line for each in told for line in each.lines]
+    text = words.summary([line.state for line in lines])
+    if not is_done:
+        return [("ERROR", f"{text}: {'; '.join(noted)}")]
+    last = ("WARNING", f"{text}; see the panel") if noted else ("INFO", text)
+    return [*(("INFO", each) for each in noted), last]
 
 
 def why_not(context: bpy.types.Context) -> str:
     """Why the button is greyed out; empty when it is not."""
-    if _running:
+    if running:
         return "Orbflow is at work; press ESC to stop it"
     if context.mode != "OBJECT":
         return "Leave edit, sculpt or paint mode first: Orbflow works in object mode"
@@ -127,18 +165,27 @@ def _is_editable(thing: bpy.types.Object) -> bool:
 
 def _tasks(context: bpy.types.Context, wanted: settings.Settings) -> list[Todo]:
     context.view_layer.update()
-    failed: list[Todo] = []
+    todo: list[Todo] = []
     # Objects that share a mesh go on sharing it where one result does for them.
     alike: dict[Any, list[bpy.types.Object]] = {}
-    for thing in context.selected_objects:
-        if thing.type != "MESH":
-            continue
+    for thing in [each for each in context.selected_objects if each.type == "MESH"]:
         if reason := _why_left(thing):
-            failed.append(Failed(thing.name, reason))
-        else:
-            scale = (f"{x:.5g}" for x in thing.matrix_world.to_scale())
-            alike.setdefault((thing.data, *scale), []).append(thing)
-    return failed + [_task(things, wanted) for things in alike.values()]
+            todo.append(Failed(thing.name, reason))
+            continue
+        try:
+            stack = modifiers.stack(context, thing, wanted)
+        except modifiers.Refused as error:
+            todo.append(Failed(thing.name, str(error)))
+            continue
+        scale = (f"{x:.5g}" for x in thing.matrix_world.to_scale())
+        alike.setdefault((thing.data, stack, *scale), []).append(thing)
+    for (_, stack, *_), things in alike.items():
+        try:
+            with modifiers.seen(context, things[0], stack) as seen:
+                todo.append(_task(things, seen, wanted))
+        except modifiers.Refused as error:
+            todo.append(Failed(things[0].name, str(error)))
+    return todo
 
 
 def _why_left(thing: bpy.types.Object) -> str:
@@ -147,44 +194,49 @@ def _why_left(thing: bpy.types.Object) -> str:
         return "it is linked from another file and cannot be changed"
     if _is_being_edited(thing):
         return "it is not in object mode, in which Orbflow works"
-    for each in thing.modifiers:
-        if each.type == "MULTIRES" and each.total_levels:
-            return f"apply or remove modifier {each.name} first: it holds a sculpt"
     return ""
 
 
-def _task(things: list[bpy.types.Object], wanted: settings.Settings) -> Todo:
+def _task(things: list[bpy.types.Object], seen: modifiers.Seen, wanted: settings.Settings) -> Todo:
     thing, *others = things
-    arrays = mesh_arrays.read(thing.data, wanted.marked_edges)
+    arrays = mesh_arrays.read(seen.thing.data, wanted.marked_edges)
     scale = tuple(thing.matrix_world.to_scale())
-    names = tuple(each.name for each in others)
-    given = artist.read(things)
+    given = artist.read([seen.thing, *others])
+    given = replace(given, keys=seen.keys, lost=given.lost + seen.lost)
     try:
-        wish = density.read(thing, wanted.density, given.groups)
+        wish = density.read(seen.thing, wanted.density, given.groups)
     except density.NoSuchName as error:
         return Failed(thing.name, str(error))
-    return Task(thing.name, arrays, scale, given, wish, names)
+    names = tuple(each.name for each in others)
+    return Task(thing.name, arrays, scale, given, wish, names, seen.applied)
 
 
 def _replace(outcome: Done) -> dict[str, Any] | Failed:
     """Gives an object, and those that share its mesh, its new one; returns what is told of it."""
-    task, given = outcome.task, outcome.task.artist
-    report = outcome.result.report | {"lost": given.lost if given else []}
+    task, given, applied = outcome.task, outcome.task.artist, outcome.task.applied
     # A linked object may have the same name.
     things = [bpy.data.objects.get((name, None)) for name in (task.name, *task.others)]
-    if not _are_unchanged(things, task.arrays):
+    if not _are_unchanged(things, task):
         return Failed(task.name, "it was changed meanwhile and is left as it is now")
+    try:
+        result = modifiers.rest_of(outcome.result, applied)
+    except modifiers.Refused as error:
+        return Failed(task.name, str(error))
     thing, *others = things
     old, name = thing.data, thing.data.name
-    thing.data = mesh_arrays.write(outcome.result, like=old)
+    thing.data = mesh_arrays.write(result, like=old)
     if given:
-        artist.write(thing, given, outcome.result, old)
+        artist.write(thing, given, result, old)
     for each in others:
         each.data = thing.data
+    if applied:
+        modifiers.leave(things, applied)
     if old.users == 0:
         bpy.data.meshes.remove(old)
         thing.data.name = name
-    panel.remember(thing, report, outcome.result.crosses)
+    report = outcome.result.report | {"lost": given.lost if given else []}
+    report |= modifiers.told(applied)
+    runs.remember(thing, report, outcome.result.crosses)
     return report
 
 
@@ -193,33 +245,28 @@ def _is_being_edited(thing: bpy.types.Object) -> bool:
     return thing.mode != "OBJECT" or thing.data.is_editmode
 
 
-def _are_unchanged(things: list[bpy.types.Object], arrays: MeshArrays) -> bool:
+def _are_unchanged(things: list[bpy.types.Object], task: Task) -> bool:
     """Whether another window has left objects of one mesh as they were read."""
     if None in things or any(each.type != "MESH" or _is_being_edited(each) for each in things):
         return False
-    mesh = things[0].data
-    now = mesh_arrays.read(mesh)
+    mesh, applied = things[0].data, task.applied
+    if applied and not modifiers.are_unchanged(things[0], applied.stack):
+        return False
+    now, before = mesh_arrays.read(mesh), applied.base if applied else task.arrays
     return all(each.data == mesh for each in things) and all(
-        np.array_equal(getattr(now, name), getattr(arrays, name))
+        np.array_equal(getattr(now, name), getattr(before, name))
         for name in ("positions", "loop_start", "corner_vert")
     )
 
 
-def _is_harmless(event: bpy.types.Event) -> bool:
-    """Whether an event looks around, or is a timer: all operators at work hear each other's."""
-    if event.type.startswith("NUMPAD"):
-        # With these keys it hides objects or sets the camera.
-        return not (event.ctrl or event.alt)
-    if event.type == "LEFTMOUSE":
-        return event.alt
-    return event.type.startswith(("MIDDLEMOUSE", "MOUSEMOVE", "NDOF", "TIMER", "TRACKPAD", "WHEEL"))
-
-
 def _draw_status(bar: bpy.types.Header, _context: bpy.types.Context) -> None:
-    if not _running:
+    if not running:
         return
-    job = _running[-1]
+    job = running[-1]
+    stage, n = job.stage, len(job.tasks)
+    which = f" {stage.at + 1:,} of {n:,}" if n > 1 else ""
     row = bar.layout.row()
-    row.ui_units_x = 12  # Blender cuts the text at the width of a short word otherwise
-    row.progress(factor=job.share, text=f"Orbflow: {job.step}")
+    row.ui_units_x = 20  # Blender cuts the text at the width of a short word otherwise
+    told = words.status(stage.step, stage.share, job.left_s())
+    row.progress(factor=stage.share, text=f"Orbflow{which}: {told}")
     bar.layout.label(text="Stop", icon="EVENT_ESC")

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is told of what became of each object, and kept for the panel."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import bpy
+import numpy as np
+
+from . import attributes, runs, spots, words
+from .job import Done, Failed
+from .runs import Left, Line, Print
+from .spots import Complaint, Numbers
+
+
+@dataclass(frozen=True)
+class Told:
+    """What became of the objects of one task."""
+
+    lines: list[Line]
+    text: str
+    is_grave: bool
+
+    @property
+    def state(self) -> str:
+        """What has become of them: `done`, `warned` or `refused`."""
+        return self.lines[0].state
+
+
+@dataclass(frozen=True)
+class Before:
+    """What only the mesh tells that a result replaces."""
+
+    print: Print | None
+    n_hidden: int
+
+
+def before(outcome: Done) -> Before:
+    """Reads what is told of an object's mesh before it is replaced."""
+    thing = runs.local(outcome.task.name)
+    if thing is None:
+        return Before(None, 0)
+    hidden = attributes.values(thing.data, ".hide_poly", "FACE", "BOOLEAN")
+    return Before(runs.print_of(thing.data), 0 if hidden is None else int(np.sum(hidden)))
+
+
+def done(outcome: Done, report: dict[str, Any], old: Before) -> Told:
+    """Tells of a task that was done; `report` is what the panel keeps of it."""
+    task = outcome.task
+    thing = bpy.data.objects[task.name, None]
+    for name in ("kept", "warnings"):
+        report.setdefault(name, [])
+    report["clean"].setdefault("n_seam_welded", 0)
+    report["n_hidden"] = old.n_hidden
+    report["nodes"] = [each.name for each in thing.modifiers if _has_nodes(each)]
+    if old.print:
+        runs.forget_left(old.print)
+    if report["kept"]:
+        n_parts = len(report["parts"]) + len(report["kept"])
+        numbers = spots.in_result(task.arrays, outcome.result)
+        if report["half"]:
+            # The mesh is a part of the result.
+            numbers = spots.gone(task.arrays)
+        complaints = spots.complaints(report["kept"], numbers, n_parts)
+        runs.remember_left(thing, Left("", complaints))
+    state = "warned" if words.is_warned(report) else "done"
+    lines = [_line(name, state, words.line(report)) for name in (task.name, *task.others)]
+    return Told(lines, words.sentence(report), words.is_grave(report))
+
+
+def refused(failed: Failed) -> Told:
+    """Tells of objects that were left as they are."""
+    thing, task = runs.local(failed.name), failed.task
+    complaints: list[Complaint] = []
+    if task:
+        numbers = _numbers(thing, failed)
+        complaints = spots.complaints(failed.kept, numbers, len(failed.kept))
+    said = "; ".join(each.words for each in complaints)
+    if thing and _is_only_one(failed.name):
+        runs.remember_left(thing, Left(said or failed.error, complaints))
+    text = f"{said} \nIn exact words: {failed.error}" if said else failed.error
+    names = (failed.name, *(task.others if task else ()))
+    return Told([_line(name, "refused", said or failed.error) for name in names], text, True)
+
+
+def _line(name: str, state: str, text: str) -> Line:
+    thing = runs.local(name)
+    return Line(name, state, text, thing and runs.print_of(thing.data))
+
+
+def _numbers(thing: bpy.types.Object | None, failed: Failed) -> Numbers:
+    """What the core calls by number is of the object's mesh, unless modifiers made another."""
+    arrays = failed.task.arrays
+    counts = len(arrays.positions), len(arrays.loop_start)
+    if thing and counts == (len(thing.data.vertices), len(thing.data.polygons)):
+        return spots.same(arrays)
+    return spots.gone(arrays)
+
+
+def _is_only_one(name: str) -> bool:
+    """Whether no linked object has the same name."""
+    return sum(each.name == name for each in bpy.data.objects) == 1
+
+
+def _has_nodes(modifier: bpy.types.Modifier) -> bool:
+    return modifier.type == "NODES" and modifier.node_group is not None

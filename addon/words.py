@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Reports and reasons of the core in an artist's words."""
+
+from typing import Any
+
+#: The steps of a run, by the core's names of them.
+STEPS = {
+    "starting": "starting",
+    "clean": "checking the mesh",
+    "decimate": "unfolding",
+    "embed": "unfolding",
+    "sphere": "mapping",
+    "flow": "laying the loops",
+    "deform": "fitting to the surface",
+    "transfer": "carrying over your data",
+    "score": "measuring",
+}
+# What cleaning drops, of one and of many.
+_CLEANED = (
+    ("n_isolated", ("loose vertex", "loose vertices")),
+    ("n_degenerate", ("face of fewer than 3 corners", "faces of fewer than 3 corners")),
+    ("n_duplicates", ("face that is there twice", "faces that are there twice")),
+    ("n_doubled", ("triangle back to back with another", "triangles back to back with others")),
+)
+# Why many parts are left, by the kind of reason.
+_OF_MANY = {
+    "border": "{} parts have holes (open edges)",
+    "handles": "{} parts have a hole through them like a ring or cup handle",
+    "shared-edges": "3 or more faces meet at edges of {} parts",
+    "one-sided": "inside and outside cannot be told apart (like a Moebius strip) in {} parts",
+    "flat": "{} parts are flat",
+    "small": "{} parts are too small for this face count",
+    "failed": "{} parts could not be done",
+}
+# Why one part is left, where that has no numbers.
+_OF_ONE = {
+    "one-sided": "inside and outside cannot be told apart (like a Moebius strip)",
+    "flat": "is flat",
+    "small": "is too small for this face count",
+}
+_OUTCOMES = (("kept", "left as they were"), ("dropped", "left out"))
+# Of more texts than these the rest is counted.
+_MOST_TEXTS = 3
+
+
+def status(step: str, share: float, left_s: float | None) -> str:
+    """How far a run is."""
+    left = "" if left_s is None else f", {_about(left_s)} left"
+    return f"{STEPS[step]}, {100 * share:.0f} %{left}"
+
+
+def _about(left_s: float) -> str:
+    if left_s < 20:
+        return f"about {max(left_s, 1):.0f} s"
+    if left_s < 90:
+        return f"about {5 * round(left_s / 5)} s"
+    return f"about {left_s / 60:.0f} min"
+
+
+def count(n: int, one: str, many: str = "") -> str:
+    """So many of something."""
+    return f"{n:,} {one if n == 1 else many or one + 's'}"
+
+
+def first_of(texts: list[str]) -> str:
+    """The first texts, and how many more there are."""
+    more = len(texts) - _MOST_TEXTS
+    return "; ".join(texts[:_MOST_TEXTS] + ([f"and {more:,} more"] if more > 0 else []))
+
+
+def reason(reason: dict[str, Any]) -> str:
+    """Why a part was left, as what it "has" or "is"."""
+    kind = reason["kind"]
+    if kind in _OF_ONE:
+        return _OF_ONE[kind]
+    if kind == "border":
+        return f"has {count(reason['n_loops'], 'hole')} (open edges)"
+    if kind == "handles":
+        through = "a hole" if reason["genus"] == 1 else f"{reason['genus']:,} holes"
+        return f"has {through} through it like a ring or cup handle"
+    if kind == "shared-edges":
+        return f"3 or more faces meet at {count(reason['n_edges'], 'edge')}"
+    return f"could not be done: {reason['text']}"
+
+
+def reason_of_many(kind: str, n_parts: int) -> str:
+    """Why several parts were left, for one kind of reason."""
+    return _OF_MANY[kind].format(f"{n_parts:,}")
+
+
+def sentence(report: dict[str, Any]) -> str:
+    """What became of an object in one line; Blender joins lines without a space."""
+    told = "".join(f"; {text}" for text in warnings(report) + exceptions(report))
+    return f"{counts(report)}{told}"
+
+
+def counts(report: dict[str, Any]) -> str:
+    """How many faces went in and came out."""
+    return f"{report['input']['n_faces']:,} faces became {report['output']['n_faces']:,}"
+
+
+def line(report: dict[str, Any]) -> str:
+    """What became of one of several objects."""
+    n, told = (report[side]["n_faces"] for side in ("input", "output")), warnings(report)
+    return "; ".join(["{:,} → {:,}".format(*n), *told])
+
+
+def summary(states: list[str]) -> str:
+    """What became of several objects in one line."""
+    told = (("done", "done"), ("warned", "with warnings"), ("refused", "refused"))
+    counts = [f"{states.count(state):,} {each}" for state, each in told if state in states]
+    return ", ".join(counts)
+
+
+def warnings(report: dict[str, Any]) -> list[str]:
+    """What may be wrong with a result, and what of the mesh was left as it was."""
+    return [each["text"] for each in report["warnings"]] + kept(report)
+
+
+def is_grave(report: dict[str, Any]) -> bool:
+    """Whether a result may be wrong, or a part was left that is not merely small."""
+    return any(each["grave"] for each in report["warnings"]) or any(map(_is_left, report["kept"]))
+
+
+def is_warned(report: dict[str, Any]) -> bool:
+    """Whether there is a warning, or a part was left that is not merely small."""
+    return bool(report["warnings"]) or is_grave(report)
+
+
+def kept(report: dict[str, Any]) -> list[str]:
+    """How many parts were left as they were, or left out, and why."""
+    n_parts = len(report["parts"]) + len(report["kept"])
+    told = []
+    for outcome, left in _OUTCOMES:
+        parts = [part for part in report["kept"] if part["outcome"] == outcome]
+        kinds: dict[str, list[dict[str, Any]]] = {}
+        for each in (each for part in parts for each in part["reasons"]):
+            kinds.setdefault(each["kind"], []).append(each)
+        why = [
+            reason(alike[0]) if len(alike) == 1 else reason_of_many(kind, len(alike))
+            for kind, alike in kinds.items()
+        ]
+        if parts:
+            told.append(f"{len(parts):,} of {n_parts:,} parts {left}: {', '.join(why)}")
+    return told
+
+
+def exceptions(report: dict[str, Any]) -> list[str]:
+    """In words what else is otherwise than was asked for."""
+    lost = ", ".join(sorted(set(report["lost"])))
+    told = [_without_flow(report), _without_mirror(report), _without_marks(report)]
+    told += [_without_network(report), f"not carried over: {lost}" if lost else ""]
+    told += [_cleaned(report), _welded(report), _shown(report), *_modifiers(report)]
+    return [each for each in told if each]
+
+
+def _cleaned(report: dict[str, Any]) -> str:
+    """What cleaning has dropped before the run."""
+    n = ((report["clean"][name], *each) for name, each in _CLEANED)
+    dropped = ", ".join(count(*each) for each in n if each[0])
+    return f"left out: {dropped}" if dropped else ""
+
+
+def _shown(report: dict[str, Any]) -> str:
+    """How many faces were hidden: those of the result are not."""
+    n = report["n_hidden"]
+    return f"{count(n, 'hidden face')} {'is' if n == 1 else 'are'} shown again" if n else ""
+
+
+def _welded(report: dict[str, Any]) -> str:
+    """How many vertices of seams were welded."""
+    n = report["clean"]["n_seam_welded"]
+    return f"{count(n, 'vertex', 'vertices')} of seams welded" if n else ""
+
+
+def _modifiers(report: dict[str, Any]) -> list[str]:
+    """Which modifiers went into the result, which makes it whole, and which may not fit it."""
+    names, half = ", ".join(report["modifiers"]), report["half"]
+    told = [f"modifiers applied: {names}" if names else ""]
+    told += [f"half is kept: modifier {half} makes it whole" if half else ""]
+    told += [f"modifier {name} stays: see whether it fits the new mesh" for name in report["nodes"]]
+    return [each for each in told if each]
+
+
+def _is_left(part: dict[str, Any]) -> bool:
+    return any(each["kind"] != "small" for each in part["reasons"])
+
+
+def _without_marks(report: dict[str, Any]) -> str:
+    """Which share of what was left on edges is on no edge of the result."""
+    gone = 100 - report["carried"]["length_pct"] if report["carried"] else 0
+    # Chords are shorter than what they stand for.
+    return f"{gone:.0f} % of the marks of edges are gone: no edge lies there" if gone > 5 else ""
+
+
+def _without_flow(report: dict[str, Any]) -> str:
+    """Which parts got the quad sphere because their quads could not flow, and why the first."""
+    return _refused(report, "flow", "quad sphere instead of flow")
+
+
+def _without_mirror(report: dict[str, Any]) -> str:
+    """Which parts could not be made symmetric, and why the first."""
+    return _refused(report, "mirrored", "not symmetric")
+
+
+def _without_network(report: dict[str, Any]) -> str:
+    """Which parts got the solver's map because a proposal was of no use."""
+    parts = report["parts"]
+    given_up = [part for part in parts if part["embedding"]["repair"]["fell_back_to_solver"]]
+    if not given_up:
+        return ""
+    of = _of_parts(given_up, parts)
+    return f"solver instead of network{of}: the proposal was beyond repair"
+
+
+def _refused(report: dict[str, Any], what: str, words: str) -> str:
+    """In how many parts something was refused, and why in the first; empty where in none."""
+    parts = report["parts"]
+    refused = [part for part in parts if (part[what] or {}).get("status") == "refused"]
+    if not refused:
+        return ""
+    return f"{words}{_of_parts(refused, parts)}: {refused[0][what]['reason']}"
+
+
+def _of_parts(some: list[dict[str, Any]], parts: list[dict[str, Any]]) -> str:
+    return f" in {len(some)} of {len(parts)} parts" if len(parts) > 1 else ""
