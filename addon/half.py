@@ -32,8 +32,8 @@ class NoHalf(Exception):
 class _Origins:
     vertex_corners: Int
     vertex_weights: Float
-    corner_corners: Int
-    corner_weights: Float
+    corner_corners: list[Int]
+    corner_weights: list[Float]
     faces: Int
 
 
@@ -107,8 +107,8 @@ def _of_half(
     return _Origins(
         origins.vertex_corners[vertices],
         origins.vertex_weights[vertices],
-        origins.corner_corners[loops],
-        origins.corner_weights[loops],
+        [each[loops] for each in origins.corner_corners],
+        [each[loops] for each in origins.corner_weights],
         origins.faces[is_kept],
     )
 

@@ -96,9 +96,10 @@ pub struct Input<'a> {
     pub density: Option<&'a [f64]>,
     /// Edges of the mesh that are to be found again on edges of the result, where these lie on them.
     pub carried: &'a [[VertexId; 2]],
-    /// Edges of the mesh along which data on corners is cut, as texture coordinates are along seams.
-    /// With them, none or some, the result says where each of its elements comes from.
-    pub cuts: Option<&'a [[VertexId; 2]]>,
+    /// Edges of the mesh along which data on corners is cut, as texture coordinates are along seams:
+    /// a set of them for each way in which data is cut. With sets, also without one, the result
+    /// says where each of its elements comes from.
+    pub cuts: Option<&'a [Vec<[VertexId; 2]>]>,
 }
 
 impl<'a> Input<'a> {
