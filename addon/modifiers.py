@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What modifiers make of a mesh: what is seen is what is remeshed.
 
-Modifiers that make geometry go into the result and leave the stack, and so do all before the last of
-them that is shown, in the stack's order. What follows a pose, a simulation or the time stays, and is
-off meanwhile; so is what follows the last one.
+Modifiers that make geometry go into the result and leave the stack, and so do all before the last
+of them that is shown, in the stack's order. What follows a pose, a simulation or the time stays,
+and is off meanwhile; so is what follows the last one.
 """
 
 from collections.abc import Iterator
