@@ -183,7 +183,8 @@ def _modifiers(report: dict[str, Any]) -> list[str]:
 
 
 def _is_left(part: dict[str, Any]) -> bool:
-    return any(each["kind"] != "small" for each in part["reasons"])
+    """Whether a part was left that is not merely small."""
+    return all(each["kind"] != "small" for each in part["reasons"])
 
 
 def _without_marks(report: dict[str, Any]) -> str:
