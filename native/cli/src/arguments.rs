@@ -9,6 +9,7 @@ use orbflow_geometry::pipeline::{Kind, Mirror, Primitive, Settings, Style};
 use orbflow_geometry::score;
 
 use crate::parsers::{degrees, format, kind, mirror, n_faces, primitive, share};
+use crate::parts::Parts;
 use crate::place::Place;
 
 const AFTER_HELP: &str = "\
@@ -122,6 +123,8 @@ pub struct Wanted {
     /// middle of the mesh; auto: across the first in which every vertex is another's image
     #[arg(long, default_value = "auto", value_parser = mirror())]
     pub mirror: Mirror,
+    #[command(flatten)]
+    pub parts: Parts,
 }
 
 /// How quads flow.
@@ -259,7 +262,7 @@ pub fn output_format(place: &Place, wanted: Option<Format>) -> Option<Format> {
 impl Wanted {
     /// What the core is asked for.
     pub fn settings(&self, work: Work, files: &Rebuilt) -> Settings {
-        Settings {
+        self.parts.asked(Settings {
             faces: self.faces,
             kind: self.kind(),
             primitive: self.primitive,
@@ -273,7 +276,7 @@ impl Wanted {
             threads: work.threads.n,
             score: files.report.as_ref().map(|_| score::Settings::default()),
             ..Settings::default()
-        }
+        })
     }
 
     fn kind(&self) -> Kind {

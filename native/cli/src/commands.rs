@@ -15,6 +15,7 @@ use crate::error::Error;
 use crate::inputs::{numbers, read};
 use crate::interrupt::Interrupt;
 use crate::outputs::Outputs;
+use crate::parts;
 use crate::place::Place;
 use crate::predictor::network;
 
@@ -135,6 +136,7 @@ impl<'a> Rebuilding<'a> {
         });
         let remeshed = remeshed.map_err(|cause| Error::pipeline(place, cause))?;
         tell(place, &remeshed.report.clean);
+        parts::tell(place, &remeshed.report.kept);
         if let Some(report) = &self.files.report {
             self.outputs.write_report(report, &remeshed.report)?;
         }

@@ -13,6 +13,7 @@ use orbflow_training::{evaluate::outcome::OutcomeError, prepare::PrepareError, s
 use thiserror::Error;
 
 use crate::interrupt::CANCELLED;
+use crate::parts;
 use crate::place::Place;
 
 /// Why the program ends without doing what was asked.
@@ -52,6 +53,9 @@ pub enum Error {
         place: Place,
         cause: pipeline::Error,
     },
+    /// No part of the mesh can be done, or in a strict run not all.
+    #[error("{}", lines.join(&format!("\norbflow: {place}: ")))]
+    Refused { place: Place, lines: Vec<String> },
     /// The network's proposal for a part was no use.
     #[error(
         "{place}: the proposal for part {part} of {n_parts} is beyond repair: {n_folds} triangles are \
@@ -132,6 +136,15 @@ impl Error {
             return Self::Cancelled(Cancelled);
         }
         let place = place.clone();
-        Self::Pipeline { place, cause }
+        match cause {
+            pipeline::Error::Refused { kept, .. } => {
+                let mut lines = parts::lines(&kept);
+                if let Some(first) = lines.first_mut() {
+                    *first = format!("{place}: {first}");
+                }
+                Self::Refused { place, lines }
+            }
+            cause => Self::Pipeline { place, cause },
+        }
     }
 }

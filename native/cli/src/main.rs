@@ -15,6 +15,7 @@ mod inputs;
 mod interrupt;
 mod outputs;
 mod parsers;
+mod parts;
 mod place;
 mod predictor;
 #[cfg(feature = "train")]

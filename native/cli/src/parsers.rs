@@ -4,7 +4,11 @@ use std::ops::RangeInclusive;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser, ValueParser};
 use orbflow_geometry::mesh::io::Format;
-use orbflow_geometry::pipeline::{Kind, MAX_FACES, MIN_FACES, Mirror, Primitive};
+use orbflow_geometry::pipeline::{
+    Kind, MAX_FACES, MAX_WELD, MIN_FACES, Mirror, Primitive, SmallParts,
+};
+
+use crate::parts::Weld;
 
 /// A parser of the number of faces of a result.
 pub fn n_faces() -> ValueParser {
@@ -47,6 +51,24 @@ pub fn share(text: &str) -> Result<f64, String> {
 /// Reads an angle in degrees: 0 to 180.
 pub fn degrees(text: &str) -> Result<f64, String> {
     up_to(text, 180.0)
+}
+
+/// Reads a percentage: 0 to 100.
+pub fn percent(text: &str) -> Result<f64, String> {
+    up_to(text, 100.0)
+}
+
+/// Reads a weld distance, or none.
+pub fn weld(text: &str) -> Result<Weld, String> {
+    if text == "off" {
+        return Ok(Weld(None));
+    }
+    up_to(text, MAX_WELD).map(|share| Weld(Some(share)))
+}
+
+/// A parser of what becomes of small parts.
+pub fn small_parts() -> ValueParser {
+    named(&[SmallParts::Keep, SmallParts::Drop], SmallParts::name)
 }
 
 fn up_to(text: &str, most: f64) -> Result<f64, String> {

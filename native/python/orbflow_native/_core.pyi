@@ -39,7 +39,12 @@ class OrbflowError(Exception):
     """What every error of Orbflow derives from."""
 
 class InputError(OrbflowError):
-    """This input or this setting cannot be done; the text says why, with numbers."""
+    """This input or this setting cannot be done; the text says why, with numbers.
+
+    `kept` lists the parts that cannot be done, as a report does.
+    """
+
+    kept: list[dict[str, Any]]
 
 class Cancelled(OrbflowError):
     """The job was stopped by its cancel token; nothing was changed."""
@@ -124,6 +129,10 @@ class Remeshed:
     def report(self) -> dict[str, Any]:
         """What is told of the run."""
 
+    @property
+    def kept_faces(self) -> int:
+        """How many faces at the end are the input's own, of parts that were kept as they were."""
+
 @final
 class Embedded:
     """A mesh of triangles and its map to the sphere."""
@@ -184,6 +193,10 @@ def remesh(
     adaptivity: float = 0.5,
     sharp_angle: float = 40.0,
     mirror: str = "auto",
+    small_parts: str = "keep",
+    small_size: float = 0.0,
+    weld: float | None = 1e-5,
+    strict: bool = False,
     predictor: str = "auto",
     weights: bytes | str | os.PathLike[str] | None = None,
     threads: int = 0,

@@ -55,6 +55,10 @@ def remesh(
     adaptivity: float = 0.5,
     sharp_angle: float = 40.0,
     mirror: str = "auto",
+    small_parts: str = "keep",
+    small_size: float = 0.0,
+    weld: float | None = 1e-5,
+    strict: bool = False,
     predictor: str = "auto",
     weights: bytes | str | os.PathLike[str] | None = None,
     threads: int = 0,
@@ -84,6 +88,11 @@ def remesh(
     across "x", "y" or "z", in the plane through the origin or the middle of the mesh; with "auto"
     across the first in which every vertex, with its density and marks, is the image of another,
     with "off" across none.
+    Parts that cannot be done stay as they were: their faces come last and are `kept_faces`, and
+    the report's `kept` says why and where; a `strict` run raises instead. Parts too small for
+    their share of the faces, or smaller than `small_size` percent of the mesh's diagonal, stay or
+    go: `small_parts` is "keep" or "drop". Borders that lie on each other are welded up to a gap of
+    `weld` times the diagonal; `None` welds equal points alone.
     Edges of the result that lie on `carried_edges` (E, 2) are told, so that what is marked on
     these can be carried over. With `cut_edges` (E, 2), along which data on corners is cut as
     texture coordinates are along seams, the result tells where each of its elements comes from.
@@ -99,7 +108,7 @@ def remesh(
     `progress` is called on the calling thread, at most 20 times a second, with the name of the
     step and the share of the work that is done. The same input and settings give the same bytes.
 
-    Raises `InputError` when the mesh cannot be done, `Cancelled` when the token was raised.
+    Raises `InputError` when no part of the mesh can be done, `Cancelled` when the token was raised.
     """
     if reduced is None and is_available():
         reduced = reduce(positions, loop_start, corner_vert, cancel)
@@ -114,6 +123,10 @@ def remesh(
         adaptivity=adaptivity,
         sharp_angle=sharp_angle,
         mirror=mirror,
+        small_parts=small_parts,
+        small_size=small_size,
+        weld=weld,
+        strict=strict,
         predictor=predictor,
         weights=weights,
         threads=threads,

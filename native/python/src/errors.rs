@@ -1,9 +1,14 @@
 //! The one place that turns errors of the core into Python exceptions.
 
+use glam::DVec3;
+use orbflow_geometry::pipeline::Kept;
 use orbflow_geometry::{pipeline, score};
 use pyo3::create_exception;
 use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
+use pyo3::types::PyList;
+
+use crate::report;
 
 create_exception!(
     orbflow_native,
@@ -15,7 +20,8 @@ create_exception!(
     orbflow_native,
     InputError,
     OrbflowError,
-    "This input or this setting cannot be done; the text says why, with numbers."
+    "This input or this setting cannot be done; the text says why, with numbers. `kept` lists the \
+     parts that cannot be done, as a report does."
 );
 create_exception!(
     orbflow_native,
@@ -24,15 +30,33 @@ create_exception!(
     "The job was stopped by its cancel token; nothing was changed."
 );
 
+/// Gives every `InputError` the list of parts that an error may carry.
+pub fn init(py: Python<'_>) -> PyResult<()> {
+    py.get_type::<InputError>()
+        .setattr("kept", PyList::empty(py))
+}
+
 /// The error of a verb: the user stopped it, or the input cannot be done.
 pub trait VerbError: std::error::Error + Send {
     /// Whether the user stopped it.
     fn is_cancelled(&self) -> bool;
+
+    /// The parts that cannot be done, where these are why.
+    fn kept(&self) -> &[Kept] {
+        &[]
+    }
 }
 
 impl VerbError for pipeline::Error {
     fn is_cancelled(&self) -> bool {
         self.is_cancelled()
+    }
+
+    fn kept(&self) -> &[Kept] {
+        match self {
+            Self::Refused { kept, .. } => kept,
+            _ => &[],
+        }
     }
 }
 
@@ -42,12 +66,26 @@ impl VerbError for score::Error {
     }
 }
 
-/// The exception for the error of a verb.
-pub fn exception(error: &impl VerbError) -> PyErr {
+/// The exception for the error of a verb, in the coordinates of the caller.
+pub fn exception(py: Python<'_>, error: &impl VerbError, scale: DVec3) -> PyErr {
     let text = error.to_string();
     if error.is_cancelled() {
-        Cancelled::new_err(text)
-    } else {
-        InputError::new_err(text)
+        return Cancelled::new_err(text);
     }
+    let exception = InputError::new_err(text);
+    if error.kept().is_empty() {
+        return exception;
+    }
+    let kept = report::dict(py, &unscaled(error.kept(), scale));
+    let told = kept.and_then(|kept| exception.value(py).setattr("kept", kept));
+    told.err().unwrap_or(exception)
+}
+
+/// Parts with their places in the coordinates of the caller.
+pub fn unscaled(kept: &[Kept], scale: DVec3) -> Vec<Kept> {
+    let mut kept = kept.to_vec();
+    for reason in kept.iter_mut().flat_map(|kept| &mut kept.reasons) {
+        reason.place = (DVec3::from_array(reason.place) / scale).to_array();
+    }
+    kept
 }

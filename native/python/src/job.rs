@@ -5,6 +5,7 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, ScopedJoinHandle};
 use std::time::Duration;
 
+use glam::DVec3;
 use orbflow_geometry::progress::{self, Progress};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -46,6 +47,7 @@ impl CancelToken {
 pub struct Job<'py> {
     listener: Option<Bound<'py, PyAny>>,
     token: progress::CancelToken,
+    scale: DVec3,
 }
 
 impl<'py> Job<'py> {
@@ -54,7 +56,13 @@ impl<'py> Job<'py> {
         Self {
             listener,
             token: token.map(|token| token.0.clone()).unwrap_or_default(),
+            scale: DVec3::ONE,
         }
+    }
+
+    /// The same on a mesh whose positions were multiplied by `scale`.
+    pub fn scaled(self, scale: DVec3) -> Self {
+        Self { scale, ..self }
     }
 
     /// Does `work` on a thread of its own while this thread reports progress and hears Ctrl-C.
@@ -86,7 +94,7 @@ impl<'py> Job<'py> {
             let done = py.detach(|| join(handle));
             heard?;
             match done {
-                Ok(result) => result.map_err(|error| errors::exception(&error)),
+                Ok(result) => result.map_err(|error| errors::exception(py, &error, self.scale)),
                 Err(text) => Err(PyRuntimeError::new_err(text)),
             }
         })

@@ -38,6 +38,7 @@ mod _core {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        crate::errors::init(module.py())?;
         module.add("MIN_FACES", pipeline::MIN_FACES)?;
         module.add("MAX_FACES", pipeline::MAX_FACES)?;
         module.add(

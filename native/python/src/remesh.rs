@@ -7,6 +7,7 @@ use orbflow_geometry::score;
 use pyo3::prelude::*;
 
 use crate::arrays::{self, MeshArrays};
+use crate::errors;
 use crate::job::{CancelToken, Job};
 use crate::origins::Origins;
 use crate::predictor::predictor;
@@ -35,6 +36,8 @@ pub struct Remeshed {
     crosses: Py<PyArray3<f32>>,
     /// What is told of the run.
     report: Py<PyAny>,
+    /// How many faces at the end are the input's own, of parts that were kept as they were.
+    kept_faces: usize,
 }
 
 /// Rebuilds a mesh by deforming a sphere into each of its parts.
@@ -51,6 +54,11 @@ pub struct Remeshed {
 /// Edges of the result that lie on `carried_edges` `(E, 2) int32` are told, so that marks on these can
 /// be carried over. With `cut_edges` `(E, 2) int32`, along which data on corners is cut as texture
 /// coordinates are along seams, the result tells where each of its elements comes from.
+/// Parts that cannot be done stay as they were: their faces come last and are `kept_faces`, and the
+/// report's `kept` says why; a `strict` run raises instead. Parts too small for their share of the
+/// faces, or smaller than `small_size` percent of the diagonal, stay or go: `small_parts` is "keep" or
+/// "drop". Borders that lie on each other are welded up to a gap of `weld` times the diagonal; `None`
+/// welds equal points alone.
 /// `predictor` is "auto", "network" or "solver": auto takes the network for maps of 20,000 vertices or
 /// more, else the solver. The network has the wheel's weights, or `weights`: the bytes of a file that
 /// `orbflow train` wrote, or its path. `n_crosses` is how many crosses of the field to tell at most.
@@ -62,10 +70,11 @@ pub struct Remeshed {
 #[pyfunction]
 #[pyo3(signature = (
     positions, loop_start, corner_vert, *, faces=2000, kind="quads", primitive=None,
-    follow_shape=0.5, adaptivity=0.5, sharp_angle=40.0, mirror="auto", predictor="auto",
+    follow_shape=0.5, adaptivity=0.5, sharp_angle=40.0, mirror="auto", small_parts="keep",
+    small_size=0.0, weld=1e-5, strict=false, predictor="auto",
     weights=None, threads=0, seed=0, scale=None, score_samples=10_000, n_crosses=0,
     material_index=None, marked_edges=None, carried_edges=None, cut_edges=None, density=None,
-    reduced=None,     progress=None, cancel=None,
+    reduced=None, progress=None, cancel=None,
 ))]
 #[expect(
     clippy::too_many_arguments,
@@ -83,6 +92,10 @@ pub fn remesh<'py>(
     adaptivity: f64,
     sharp_angle: f64,
     mirror: &str,
+    small_parts: &str,
+    small_size: f64,
+    weld: Option<f64>,
+    strict: bool,
     predictor: &str,
     weights: Option<&Bound<'py, PyAny>>,
     threads: usize,
@@ -129,6 +142,10 @@ pub fn remesh<'py>(
         },
         sharp_angle,
         mirror: report::choice("mirror", mirror)?,
+        small_parts: report::choice("small_parts", small_parts)?,
+        small_size,
+        weld,
+        strict,
         seed,
         threads,
         n_crosses,
@@ -147,9 +164,11 @@ pub fn remesh<'py>(
         carried: carried.as_deref().unwrap_or_default(),
         cuts: cuts.as_deref(),
     };
-    let remeshed = Job::new(progress, cancel).run(py, |progress| {
+    let job = Job::new(progress, cancel).scaled(scale);
+    let mut remeshed = job.run(py, |progress| {
         pipeline::remesh(input, &settings, predictor.as_ref(), progress)
     })?;
+    remeshed.report.kept = errors::unscaled(&remeshed.report.kept, scale);
     Remeshed::new(py, &remeshed, scale)
 }
 
@@ -169,6 +188,7 @@ impl Remeshed {
             origins: origins.transpose()?,
             crosses: arrays::cross_array(py, &remeshed.crosses, scale.recip())?,
             report: report::dict(py, &remeshed.report)?.unbind(),
+            kept_faces: remeshed.kept_faces,
         })
     }
 }

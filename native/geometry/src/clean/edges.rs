@@ -72,31 +72,6 @@ impl Edges {
         }
         lonely
     }
-
-    /// The other triangle at each side of each triangle, where edges have at most two.
-    pub(super) fn neighbours(&self) -> impl Iterator<Item = [Option<FaceId>; 3]> {
-        let other = |h: usize| {
-            let edge = self.edge[h] as usize;
-            let [from, to] = [self.starts[edge], self.starts[edge + 1]];
-            let run = &self.halfedges[from as usize..to as usize];
-            run.iter()
-                .find(|other| other.index() != h)
-                .map(|h| h.face())
-        };
-        (0..self.edge.len() / 3).map(move |f| [3 * f, 3 * f + 1, 3 * f + 2].map(other))
-    }
-
-    /// The other halfedge at the edge of each halfedge, where edges have at most two.
-    pub(super) fn into_twins(self) -> Twins {
-        let mut twins = vec![NONE; self.halfedges.len()];
-        for run in self.runs() {
-            if let [g, h] = *run {
-                twins[g.index()] = h.0;
-                twins[h.index()] = g.0;
-            }
-        }
-        Twins(twins)
-    }
 }
 
 const NONE: u32 = u32::MAX;
@@ -105,6 +80,36 @@ const NONE: u32 = u32::MAX;
 pub(super) struct Twins(Vec<u32>);
 
 impl Twins {
+    /// Nothing but borders, of so many halfedges.
+    pub(super) fn none(n: usize) -> Self {
+        Self(vec![NONE; n])
+    }
+
+    /// Makes two halfedges each other's twins.
+    pub(super) fn link(&mut self, g: HalfedgeId, h: HalfedgeId) {
+        self.0[g.index()] = h.0;
+        self.0[h.index()] = g.0;
+    }
+
+    /// Those of some of the triangles only; a triangle is kept with its neighbours or goes with them.
+    pub(super) fn keep(&mut self, is_kept: &[bool]) {
+        let mut n = 0;
+        let shift: Vec<u32> = is_kept
+            .iter()
+            .map(|&kept| {
+                n += u32::from(!kept);
+                3 * n
+            })
+            .collect();
+        let old = std::mem::take(&mut self.0);
+        let kept = old.chunks_exact(3).zip(is_kept).filter(|(_, kept)| **kept);
+        let renamed = |&twin: &u32| match twin {
+            NONE => NONE,
+            twin => twin - shift[twin as usize / 3],
+        };
+        self.0 = kept.flat_map(|(of, _)| of.iter().map(renamed)).collect();
+    }
+
     /// The other halfedge at the same edge, if there is one.
     pub(super) fn of(&self, h: HalfedgeId) -> Option<HalfedgeId> {
         Some(self.0[h.index()])

@@ -1,17 +1,18 @@
 //! One vertex for each fan of faces.
 
-use glam::DVec3;
-
 use super::edges::{Twins, halfedges};
+use super::triangulate::Triangulated;
 use crate::mesh::{FaceId, HalfedgeId, Id, VertexId};
 
 /// Gives each fan at a vertex but the first a vertex of its own at the same point, after all
 /// others, and returns how many. Faces agree and have at most one neighbour at each edge.
-pub(super) fn split(
-    faces: &mut [[VertexId; 3]],
-    twins: &Twins,
-    positions: &mut Vec<DVec3>,
-) -> usize {
+pub(super) fn split(triangulated: &mut Triangulated, twins: &Twins) -> usize {
+    let Triangulated {
+        positions,
+        origins,
+        faces,
+        ..
+    } = triangulated;
     let n_before = positions.len();
     let mut has_fan = vec![false; positions.len()];
     let mut seen = vec![false; 3 * faces.len()];
@@ -29,6 +30,7 @@ pub(super) fn split(
             if std::mem::replace(&mut has_fan[vertex.index()], true) {
                 let own = VertexId::from_index(positions.len());
                 positions.push(positions[vertex.index()]);
+                origins.push(origins[vertex.index()]);
                 for h in &fan {
                     faces[h.face().index()][h.corner()] = own;
                 }

@@ -1,56 +1,85 @@
 //! What has to be done when polygons over welded vertices are not a solid already.
 
-use glam::DVec3;
-
 use super::edges::Edges;
 use super::polygons::Polygons;
 use super::triangulate::Triangulated;
-use super::{Error, Report, fans, orient};
-use crate::mesh::{FaceId, Id, VertexId};
+use super::{Error, Report};
+use crate::groups::Groups;
+use crate::mesh::{FaceId, FaceMap, HalfedgeId, Id, VertexId, VertexMap};
 use crate::progress::Progress;
 
-/// Triangles that make a manifold mesh but for vertices without a face.
-pub(super) struct Mended {
-    pub(super) positions: Vec<DVec3>,
-    pub(super) faces: Vec<[VertexId; 3]>,
-    pub(super) source: Vec<FaceId>,
+/// Triangles over welded vertices, however they meet.
+pub(super) struct Soup {
+    pub(super) triangulated: Triangulated,
+    pub(super) edges: Edges,
 }
 
-/// Drops repeated polygons and hanging flat triangles, turns faces, splits vertices.
-pub(super) fn mend(
-    mut polygons: Polygons,
-    mut triangulated: Triangulated,
-    report: &mut Report,
-    progress: &Progress,
-) -> Result<Mended, Error> {
-    report.n_duplicates = polygons.drop_repeated();
-    if report.n_duplicates > 0 {
-        triangulated.cut_all(&polygons);
-    }
-    let mut edges = Edges::new(&triangulated.faces);
-    progress.at(0.8)?;
-    while triangulated.resolve_conflicts(&edges, &polygons) {
-        edges = Edges::new(&triangulated.faces);
+impl Soup {
+    /// Drops repeated polygons and hanging flat triangles, and cuts polygons so that none of their
+    /// diagonals meets other faces.
+    pub(super) fn new(
+        mut polygons: Polygons,
+        mut triangulated: Triangulated,
+        report: &mut Report,
+        progress: &Progress,
+    ) -> Result<Self, Error> {
+        report.n_duplicates = polygons.drop_repeated();
+        if report.n_duplicates > 0 {
+            triangulated.cut_all(&polygons);
+        }
+        let mut edges = Edges::new(&triangulated.faces);
         progress.check()?;
+        while triangulated.resolve_conflicts(&edges, &polygons) {
+            edges = Edges::new(&triangulated.faces);
+            progress.check()?;
+        }
+        report.n_flat_dropped = drop_flat_fins(&mut triangulated, &mut edges);
+        Ok(Self {
+            triangulated,
+            edges,
+        })
     }
-    report.n_flat_dropped = drop_flat_fins(&mut triangulated, &mut edges);
-    check_edges(&edges, &triangulated)?;
-    report.n_doubled = drop_doubled(&mut triangulated, &mut edges)?;
-    let mut twins = edges.into_twins();
-    let mut faces = triangulated.faces;
-    progress.at(0.85)?;
-    report.n_reoriented = orient::agree(&mut faces, &mut twins)
-        .map_err(|[a, b]| [a, b].map(|v| triangulated.origins[v.index()]))
-        .map_err(|[a, b]| Error::NotOrientable { a, b })?;
-    progress.at(0.9)?;
-    let mut positions = triangulated.positions;
-    report.n_split = fans::split(&mut faces, &twins, &mut positions);
-    progress.at(0.95)?;
-    Ok(Mended {
-        positions,
-        faces,
-        source: triangulated.source,
-    })
+
+    /// The input's faces that hang together with an edge of more than two, and which of the
+    /// input's vertices they use; none where there is no such edge.
+    pub(super) fn crowded(
+        &self,
+        n_faces: usize,
+        n_vertices: usize,
+    ) -> Option<(FaceMap<bool>, VertexMap<bool>)> {
+        let is_crowded = |run: &&[HalfedgeId]| run.len() > 2;
+        self.edges.runs().find(is_crowded)?;
+        let mut groups = Groups::new(self.triangulated.faces.len());
+        for run in self.edges.runs() {
+            for pair in run.windows(2) {
+                groups.link(pair[0].face().index(), pair[1].face().index());
+            }
+        }
+        let (group, n) = groups.numbered();
+        let mut is_hit = vec![false; n];
+        for run in self.edges.runs().filter(is_crowded) {
+            is_hit[group[run[0].face().index()] as usize] = true;
+        }
+        let mut faces = FaceMap::filled(n_faces, false);
+        let mut vertices = VertexMap::filled(n_vertices, false);
+        for (i, corners) in self.triangulated.faces.iter().enumerate() {
+            if is_hit[group[i] as usize] {
+                faces[self.triangulated.source[i]] = true;
+                for v in corners.iter().filter(|v| v.index() < n_vertices) {
+                    vertices[*v] = true;
+                }
+            }
+        }
+        Some((faces, vertices))
+    }
+
+    /// The ends of an edge, as the input names them, the smaller first.
+    pub(super) fn ends(&self, h: HalfedgeId) -> [VertexId; 2] {
+        let face = self.triangulated.faces[h.face().index()];
+        let ends = [face[h.corner()], face[h.next().corner()]];
+        let [a, b] = ends.map(|v| self.triangulated.origins[v.index()]);
+        [a.min(b), a.max(b)]
+    }
 }
 
 /// Drops triangles without area that hang on the surface: those with an edge that no other face
@@ -73,35 +102,4 @@ fn drop_flat_fins(triangulated: &mut Triangulated, edges: &mut Edges) -> usize {
         *edges = Edges::new(&triangulated.faces);
     }
     n_dropped
-}
-
-/// Drops pairs of triangles that have all three edges in common.
-fn drop_doubled(triangulated: &mut Triangulated, edges: &mut Edges) -> Result<usize, Error> {
-    let is_kept: Vec<bool> = edges
-        .neighbours()
-        .map(|[a, b, c]| a.is_none() || a != b || b != c)
-        .collect();
-    let n_dropped = is_kept.iter().filter(|is_kept| !**is_kept).count();
-    if n_dropped == is_kept.len() {
-        return Err(Error::TooFewPoints { n_points: 3 });
-    }
-    if n_dropped > 0 {
-        triangulated.keep(&is_kept);
-        *edges = Edges::new(&triangulated.faces);
-    }
-    Ok(n_dropped)
-}
-
-fn check_edges(edges: &Edges, triangulated: &Triangulated) -> Result<(), Error> {
-    let Some(run) = edges.runs().find(|run| run.len() > 2) else {
-        return Ok(());
-    };
-    let face = triangulated.faces[run[0].face().index()];
-    let ends = [face[run[0].corner()], face[run[0].next().corner()]];
-    let [a, b] = ends.map(|v| triangulated.origins[v.index()]);
-    Err(Error::NonManifoldEdge {
-        n_faces: run.len(),
-        a: a.min(b),
-        b: a.max(b),
-    })
 }

@@ -11,14 +11,17 @@
 //!
 //! Not done: holes stay open, parts that cross stay crossed, an inside-out part stays so.
 
+mod apart;
 mod ears;
 mod edges;
 mod fans;
 mod mend;
 mod orient;
+mod pairs;
 mod polygons;
 mod report;
 mod scale;
+mod seam;
 mod triangulate;
 mod weld;
 
@@ -27,10 +30,14 @@ use thiserror::Error;
 
 use crate::mesh::{
     FaceId, FaceMap, HalfedgeId, Id, PolygonMesh, TriangleMesh, TriangleMeshError, VertexId,
+    VertexMap,
 };
 use crate::progress::{Cancelled, Progress};
+pub use apart::{Apart, SharedEdge, Tangle};
+use mend::Soup;
 use polygons::Polygons;
 pub use report::Report;
+pub use seam::{WELD, distance};
 use triangulate::Triangulated;
 use weld::Reach;
 
@@ -43,6 +50,26 @@ pub struct Cleaned {
     pub source: FaceMap<FaceId>,
     /// What had to be done.
     pub report: Report,
+}
+
+impl Cleaned {
+    /// Some of the triangles, none of them without all that hangs together with it.
+    ///
+    /// # Panics
+    /// When a component is wanted in part.
+    #[must_use]
+    pub fn only(&self, is_wanted: &[bool]) -> Self {
+        let faces = self.mesh.faces().iter().zip(is_wanted);
+        let faces = faces.filter(|(_, wanted)| **wanted).map(|(face, _)| *face);
+        let mesh = TriangleMesh::of_faces(self.mesh.positions(), faces);
+        let source = self.source.iter().zip(is_wanted);
+        let source = source.filter(|(_, wanted)| **wanted).map(|(face, _)| *face);
+        Self {
+            mesh: mesh.expect("components of a mesh are a mesh").0,
+            source: source.collect(),
+            report: self.report,
+        }
+    }
 }
 
 /// Why no manifold mesh can be made. Vertices are the input's, counted from 0.
@@ -98,48 +125,131 @@ pub enum Error {
 /// Makes a manifold triangle mesh of polygons; see the module for what is done.
 ///
 /// Works for coordinates of any size. Costs O(n log n). Each component keeps the orientation of
-/// most of its faces, be it outward or inward.
+/// most of its faces, be it outward or inward. Triangles back to back enclose nothing and go.
 ///
 /// # Errors
 /// When there is nothing to work with, when more than two faces meet at an edge, when a component
 /// cannot be oriented, when the user cancels.
 pub fn clean(input: &PolygonMesh, progress: &Progress) -> Result<Cleaned, Error> {
+    let Apart {
+        mesh,
+        source,
+        tangles,
+        mut report,
+        ..
+    } = take_apart(input, None, progress)?;
+    if let Some(error) = tangles.first().and_then(Tangle::error) {
+        return Err(error);
+    }
+    let is_left = not_doubled(&mesh);
+    report.n_doubled = is_left.iter().filter(|&&is_left| !is_left).count();
+    if report.n_doubled == is_left.len() || mesh.n_vertices() < 4 {
+        let n_points = mesh.n_vertices().min(3);
+        return Err(Error::TooFewPoints { n_points });
+    }
+    let cleaned = Cleaned {
+        mesh,
+        source,
+        report,
+    };
+    Ok(match report.n_doubled {
+        0 => cleaned,
+        _ => cleaned.only(&is_left),
+    })
+}
+
+/// Takes a mesh apart into its parts; see the module for what is done.
+///
+/// Works for coordinates of any size. Costs O(n log n). Each surface keeps the orientation of most
+/// of its faces. Borders that lie on each other are welded up to a gap of `weld` times the diagonal.
+///
+/// # Errors
+/// When there is nothing to work with, when the user cancels.
+pub fn take_apart(
+    input: &PolygonMesh,
+    weld: Option<f64>,
+    progress: &Progress,
+) -> Result<Apart, Error> {
+    let apart = exactly(input, &progress.part("", 0.0, 0.6))?;
+    let Some(share) = weld.filter(|_| apart.is_open()) else {
+        return Ok(apart);
+    };
+    let distance = seam::distance(input, share);
+    let Some(closed) = seam::close(input, &apart, distance, progress)? else {
+        return Ok(apart);
+    };
+    let moved = input.with_positions(closed.positions);
+    let mut apart = exactly(&moved, &progress.part("", 0.6, 1.0))?;
+    let report = &mut apart.report;
+    report.n_welded = report.n_welded.saturating_sub(closed.n_welded);
+    report.n_seam_welded = closed.n_welded;
+    report.weld_distance = closed.gap;
+    apart.moved = Some(moved.positions().to_vec());
+    Ok(apart)
+}
+
+/// The same where equal points alone are welded.
+fn exactly(input: &PolygonMesh, progress: &Progress) -> Result<Apart, Error> {
     let [n_vertices, n_faces] = [input.n_vertices(), input.n_faces()];
     if n_faces == 0 {
         return Err(Error::NoFaces { n_vertices });
     }
-    match attempt(input, Reach::All, progress) {
-        Err(edge @ Error::NonManifoldEdge { .. }) => attempt(input, Reach::Border, progress)
-            .map_err(|error| match error {
-                Error::Cancelled(_) => error,
-                _ => edge,
-            }),
-        result => result,
-    }
-}
-
-fn attempt(input: &PolygonMesh, reach: Reach, progress: &Progress) -> Result<Cleaned, Error> {
     let mut report = Report::default();
-    let first = weld::first_equal(input, reach);
+    let all = weld::first_equal(input, Reach::All);
     progress.at(0.2)?;
-    let polygons = polygons::simplify(input, &first, &mut report);
+    let polygons = polygons::simplify(input, |_, v| all[v.index()], &mut report);
     progress.at(0.4)?;
     let triangulated = Triangulated::new(input, &polygons);
     progress.at(0.6)?;
     check_area(&triangulated, input)?;
-    count_vertices(&first, &polygons, &mut report);
+    count_vertices(&all, &polygons, &mut report);
     progress.at(0.65)?;
-    if let Some(cleaned) = already_solid(&triangulated, report, progress)? {
-        return Ok(cleaned);
+    if let Some(apart) = already_solid(&triangulated, report, progress)? {
+        return Ok(apart);
     }
     progress.at(0.7)?;
-    let mended = mend::mend(polygons, triangulated, &mut report, progress)?;
-    let (positions, faces) = compact(&mended.positions, mended.faces);
-    Ok(Cleaned {
-        mesh: TriangleMesh::build(positions, faces, progress)??,
-        source: FaceMap::from_vec(mended.source),
-        report,
-    })
+    let soup = Soup::new(polygons, triangulated, &mut report, progress)?;
+    let soup = match soup.crowded(n_faces, n_vertices) {
+        Some(crowded) => loosened(input, &all, crowded, &mut report)?,
+        None => soup,
+    };
+    apart::sort(soup, report, progress)
+}
+
+/// Welds anew what hangs together with edges of more than two faces: vertices on borders alone.
+fn loosened(
+    input: &PolygonMesh,
+    all: &[VertexId],
+    (mut faces, vertices): (FaceMap<bool>, VertexMap<bool>),
+    report: &mut Report,
+) -> Result<Soup, Error> {
+    let border = weld::first_equal(input, Reach::Border);
+    let polygons = polygons::simplify(input, |_, v| all[v.index()], &mut Report::default());
+    let mut is_left: FaceMap<bool> = FaceMap::filled(input.n_faces(), false);
+    (0..polygons.len()).for_each(|i| is_left[polygons.source(i)] = true);
+    // What all welding makes degenerate may be a wall between others.
+    let touches = |face| input.face(face).iter().any(|v| vertices[all[v.index()]]);
+    for face in input.face_ids().filter(|&face| !is_left[face]) {
+        faces[face] = touches(face);
+    }
+    let mut names = all.to_vec();
+    for face in input.face_ids().filter(|&face| faces[face]) {
+        for v in input.face(face) {
+            names[v.index()] = border[v.index()];
+        }
+    }
+    let name = |face, v: VertexId| {
+        if faces[face] {
+            border[v.index()]
+        } else {
+            all[v.index()]
+        }
+    };
+    let polygons = polygons::simplify(input, name, report);
+    [report.n_welded, report.n_isolated] = [0; 2];
+    count_vertices(&names, &polygons, report);
+    let triangulated = Triangulated::new(input, &polygons);
+    Soup::new(polygons, triangulated, report, &Progress::none())
 }
 
 /// The mesh if it has nothing to mend and no border, which is told fastest by trying.
@@ -147,78 +257,102 @@ fn already_solid(
     triangulated: &Triangulated,
     report: Report,
     progress: &Progress,
-) -> Result<Option<Cleaned>, Cancelled> {
-    let (positions, faces) = compact(&triangulated.positions, triangulated.faces.clone());
+) -> Result<Option<Apart>, Cancelled> {
+    let compacted = compact(&triangulated.positions, triangulated.faces.clone());
     progress.check()?;
-    let Ok(mesh) = TriangleMesh::build(positions, faces, progress)? else {
+    let Ok(mesh) = TriangleMesh::build(compacted.positions, compacted.faces, progress)? else {
         return Ok(None);
     };
-    let source = FaceMap::from_vec(triangulated.source.clone());
-    let cleaned = Cleaned {
+    if !mesh.is_closed() {
+        return Ok(None);
+    }
+    let origin = compacted.was.iter();
+    let origin = origin.map(|v| triangulated.origins[v.index()]).collect();
+    Ok(Some(Apart {
         mesh,
-        source,
+        source: FaceMap::from_vec(triangulated.source.clone()),
+        origin,
+        tangles: Vec::new(),
+        moved: None,
         report,
-    };
-    let is_solid = cleaned.mesh.is_closed() && !has_doubled(&cleaned.mesh);
-    Ok(is_solid.then_some(cleaned))
+    }))
 }
 
-/// Whether two triangles lie back to back, with all three edges in common.
-fn has_doubled(mesh: &TriangleMesh) -> bool {
-    mesh.face_ids().any(|face| {
+/// Which triangles do not lie back to back with another, all three edges in common.
+fn not_doubled(mesh: &TriangleMesh) -> Vec<bool> {
+    let is_left = |face| {
         let h = mesh.halfedge(face);
         let neighbour = |h| mesh.twin(h).map(HalfedgeId::face);
         let first = neighbour(h);
-        first.is_some() && first == neighbour(h.next()) && first == neighbour(h.prev())
-    })
+        first.is_none() || first != neighbour(h.next()) || first != neighbour(h.prev())
+    };
+    mesh.face_ids().map(is_left).collect()
 }
 
-/// Refuses meshes whose faces are all points or lines, and those of fewer than four points.
+/// Refuses meshes whose faces are all points or lines.
 fn check_area(triangulated: &Triangulated, input: &PolygonMesh) -> Result<(), Error> {
     let faces = &triangulated.faces;
     if faces.iter().all(|&face| triangulated.is_flat(face)) {
         let n_faces = input.n_faces();
         return Err(Error::NoArea { n_faces });
     }
-    let mut points: Vec<VertexId> = faces.iter().take(4).flatten().copied().collect();
-    points.sort_unstable();
-    points.dedup();
-    if points.len() < 4 {
-        let n_points = points.len();
-        return Err(Error::TooFewPoints { n_points });
-    }
     Ok(())
 }
 
+/// Faces over the vertices that they use.
+struct Compacted {
+    positions: Vec<DVec3>,
+    faces: Vec<[VertexId; 3]>,
+    /// What each vertex was called before.
+    was: Vec<VertexId>,
+}
+
 /// Drops vertices that no face uses.
-fn compact(positions: &[DVec3], mut faces: Vec<[VertexId; 3]>) -> (Vec<DVec3>, Vec<[VertexId; 3]>) {
+fn compact(positions: &[DVec3], mut faces: Vec<[VertexId; 3]>) -> Compacted {
     const UNUSED: VertexId = VertexId(u32::MAX);
     let mut renamed = vec![UNUSED; positions.len()];
     for vertex in faces.iter().flatten() {
         renamed[vertex.index()] = *vertex;
     }
-    let mut kept = Vec::with_capacity(positions.len());
-    for (name, &position) in renamed.iter_mut().zip(positions) {
-        if *name != UNUSED {
-            *name = VertexId::from_index(kept.len());
-            kept.push(position);
-        }
+    let mut was = Vec::with_capacity(positions.len());
+    for name in renamed.iter_mut().filter(|name| **name != UNUSED) {
+        was.push(std::mem::replace(name, VertexId::from_index(was.len())));
     }
     for vertex in faces.iter_mut().flatten() {
         *vertex = renamed[vertex.index()];
     }
-    (kept, faces)
+    Compacted {
+        positions: was.iter().map(|v| positions[v.index()]).collect(),
+        faces,
+        was,
+    }
 }
 
 /// Counts the vertices welded, and those that no face of the input used.
-fn count_vertices(first: &[VertexId], polygons: &Polygons, report: &mut Report) {
-    let mut used = vec![false; first.len()];
+fn count_vertices(names: &[VertexId], polygons: &Polygons, report: &mut Report) {
+    let mut used = vec![false; names.len()];
     for vertex in polygons.corners() {
         used[vertex.index()] = true;
     }
-    for (i, vertex) in first.iter().enumerate() {
+    for (i, vertex) in names.iter().enumerate() {
         report.n_welded += usize::from(vertex.index() != i);
         report.n_isolated += usize::from(vertex.index() == i && !used[i]);
+    }
+}
+
+impl Tangle {
+    /// What is wrong first.
+    fn error(&self) -> Option<Error> {
+        let shared = self.shared.first().map(|edge| Error::NonManifoldEdge {
+            n_faces: edge.n_faces,
+            a: edge.ends[0],
+            b: edge.ends[1],
+        });
+        let one_sided = || {
+            let [a, b] = self.one_sided?;
+            Some(Error::NotOrientable { a, b })
+        };
+        shared.or_else(one_sided)
     }
 }
 

@@ -4,15 +4,12 @@ use super::edges::{Twins, halfedges};
 use crate::mesh::{FaceId, HalfedgeId, Id, VertexId};
 
 /// Turns faces so that both faces of every edge run through it in opposite directions; in each
-/// component the smaller part is turned. Returns how many faces were turned, or the ends of an
-/// edge where it cannot be done.
-pub(super) fn agree(
-    faces: &mut [[VertexId; 3]],
-    twins: &mut Twins,
-) -> Result<usize, [VertexId; 2]> {
+/// component the smaller part is turned. Returns an edge of each component that cannot be done and
+/// stays as it was.
+pub(super) fn agree(faces: &mut [[VertexId; 3]], twins: &mut Twins) -> Vec<HalfedgeId> {
     let mut turned: Vec<Option<bool>> = vec![None; faces.len()];
     let mut component = Vec::new();
-    let mut n_turned = 0;
+    let mut one_sided = Vec::new();
     for seed in (0..faces.len()).map(FaceId::from_index) {
         if turned[seed.index()].is_some() {
             continue;
@@ -20,29 +17,32 @@ pub(super) fn agree(
         component.clear();
         component.push(seed);
         turned[seed.index()] = Some(false);
-        spread(faces, twins, &mut component, &mut turned)?;
+        if let Some(h) = spread(faces, twins, &mut component, &mut turned) {
+            one_sided.push(h);
+            continue;
+        }
         let is_turned = |f: &FaceId| turned[f.index()] == Some(true);
         let n = component.iter().filter(|f| is_turned(f)).count();
         let smaller = 2 * n <= component.len();
         component.retain(|f| is_turned(f) == smaller);
-        n_turned += component.len();
         for &face in &component {
             faces[face.index()].swap(1, 2);
             twins.turn_face(face);
         }
     }
-    Ok(n_turned)
+    one_sided
 }
 
 /// Visits the component of the one face in the list, face after face, and decides for each whether
-/// to turn it.
+/// to turn it; the first edge where faces disagree whichever way they are turned.
 fn spread(
     faces: &[[VertexId; 3]],
     twins: &Twins,
     component: &mut Vec<FaceId>,
     turned: &mut [Option<bool>],
-) -> Result<(), [VertexId; 2]> {
+) -> Option<HalfedgeId> {
     let origin = |h: HalfedgeId| faces[h.face().index()][h.corner()];
+    let mut wrong = None;
     let mut i = 0;
     while let Some(&face) = component.get(i) {
         i += 1;
@@ -57,10 +57,9 @@ fn spread(
                 *known = wanted;
                 component.push(twin.face());
             } else if *known != wanted {
-                let ends = [origin(h), origin(h.next())];
-                return Err([ends[0].min(ends[1]), ends[0].max(ends[1])]);
+                wrong = wrong.or(Some(h));
             }
         }
     }
-    Ok(())
+    wrong
 }

@@ -50,11 +50,18 @@ impl Polygons {
 }
 
 /// Drops corners that repeat, and polygons of which fewer than three corners are left.
-pub(super) fn simplify(input: &PolygonMesh, first: &[VertexId], report: &mut Report) -> Polygons {
+///
+/// `name` says what a vertex is called in a face.
+pub(super) fn simplify(
+    input: &PolygonMesh,
+    name: impl Fn(FaceId, VertexId) -> VertexId,
+    report: &mut Report,
+) -> Polygons {
     let mut polygons = Polygons::default();
+    [report.n_degenerate, report.n_shortened] = [0; 2];
     let mut corners = Vec::new();
     for face in input.face_ids() {
-        let welded = input.face(face).iter().map(|v| first[v.0 as usize]);
+        let welded = input.face(face).iter().map(|&v| name(face, v));
         drop_spikes(welded, &mut corners);
         if corners.len() < 3 {
             report.n_degenerate += 1;

@@ -3,10 +3,14 @@
 use serde::{Deserialize, Serialize};
 
 /// What [`clean`](super::clean) had to do.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Copy, PartialEq, Debug, Default, Serialize, Deserialize)]
 pub struct Report {
     /// Vertices merged into an earlier one at exactly the same point.
     pub n_welded: usize,
+    /// Points of borders that were welded to others across a gap.
+    pub n_seam_welded: usize,
+    /// The largest gap that was welded so, in the input's units.
+    pub weld_distance: f64,
     /// Vertices dropped because no face uses them.
     pub n_isolated: usize,
     /// Faces dropped because fewer than three different corners were left.
@@ -28,7 +32,16 @@ pub struct Report {
 impl Report {
     /// One sentence for each thing that was done; none for a mesh that came clean.
     pub fn sentences(&self) -> Vec<String> {
-        [
+        let seams = (self.n_seam_welded > 0).then(|| {
+            let (n, gap) = (self.n_seam_welded, self.weld_distance);
+            let what = if n == 1 {
+                "border point"
+            } else {
+                "border points"
+            };
+            format!("{n} {what} welded across gaps of up to {gap:.2e}")
+        });
+        let counted = [
             (
                 self.n_welded,
                 "duplicate vertex welded",
@@ -73,7 +86,7 @@ impl Report {
         ]
         .into_iter()
         .filter(|(n, _, _)| *n > 0)
-        .map(|(n, one, many)| format!("{n} {}", if n == 1 { one } else { many }))
-        .collect()
+        .map(|(n, one, many)| format!("{n} {}", if n == 1 { one } else { many }));
+        seams.into_iter().chain(counted).collect()
     }
 }

@@ -36,6 +36,16 @@ impl Scale {
         position * self.factors[0] * self.factors[1]
     }
 
+    /// A length in this scale.
+    pub(super) fn factor(self, length: f64) -> f64 {
+        length * self.factors[0] * self.factors[1]
+    }
+
+    /// A length back from this scale.
+    pub(super) fn length(self, factor: f64) -> f64 {
+        factor / self.factors[0] / self.factors[1]
+    }
+
     /// Whether three points are on a line, as far as rounding lets one see.
     pub(super) fn is_flat(self, corners: [DVec3; 3]) -> bool {
         let [a, b, c] = corners.map(|p| self.point(p));

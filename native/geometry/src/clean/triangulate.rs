@@ -77,6 +77,11 @@ impl Triangulated {
         self.scale.is_flat(corners)
     }
 
+    /// The place of a vertex, in a scale in which products are safe.
+    pub(super) fn scaled(&self, vertex: VertexId) -> DVec3 {
+        self.scale.point(self.positions[vertex.index()])
+    }
+
     pub(super) fn is_face_flat(&self, face: FaceId) -> bool {
         self.is_flat(self.faces[face.index()])
     }

@@ -40,7 +40,7 @@ pub(super) fn first_equal(input: &PolygonMesh, reach: Reach) -> Vec<VertexId> {
 }
 
 /// The bits of a coordinate; both zeros have the same.
-fn bits(coordinate: f64) -> u64 {
+pub(super) fn bits(coordinate: f64) -> u64 {
     (coordinate + 0.0).to_bits()
 }
 

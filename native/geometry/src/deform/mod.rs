@@ -189,6 +189,36 @@ pub fn deform(
 }
 
 impl Deformed {
+    /// Faces that lie on the surface already, with their points on the sphere and the edges that lie
+    /// on sharp lines, each once, in order. What is inverted or crosses is counted.
+    ///
+    /// # Errors
+    /// Faces that do not cover the sphere once, and [`Cancelled`].
+    pub fn laid(
+        mesh: PolygonMesh,
+        sphere: Vec<DVec3>,
+        on_lines: Vec<[VertexId; 2]>,
+        progress: &Progress,
+    ) -> Result<Self, Error> {
+        check_cover(&mesh, &sphere)?;
+        let n_crossing = separate::n_crossing(&mesh, progress)?;
+        let report = Report {
+            n_feature_goals: on_lines.len(),
+            n_feature_vertices: on_lines.len(),
+            n_crossing,
+            n_crossing_left: n_crossing,
+            n_inverted: untangle::n_inverted(&mesh),
+            ..Report::default()
+        };
+        Ok(Self {
+            features: on_lines.clone(),
+            led: on_lines,
+            mesh,
+            sphere,
+            report,
+        })
+    }
+
     /// The same with its vertices elsewhere in space; what is inverted is counted anew.
     ///
     /// # Panics

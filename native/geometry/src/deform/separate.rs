@@ -9,7 +9,7 @@ use glam::DVec3;
 use super::sheet::{Face, Point, Sheet};
 use super::skin::cut;
 use super::untangle::{REACHES, corners, grown, places_around, smooth, worse_than};
-use crate::mesh::{FaceId, Id, VertexId, VertexMap, bounds};
+use crate::mesh::{FaceId, Id, PolygonMesh, VertexId, VertexMap, bounds};
 use crate::nearest::{Bvh, crossing_pairs, depths};
 use crate::progress::{Cancelled, Progress};
 
@@ -68,6 +68,16 @@ pub(super) fn separate(sheet: &mut Sheet, progress: &Progress) -> Result<[usize;
         }
     }
     Ok([n_before, solid.n_pairs])
+}
+
+/// How many pairs of triangles of some faces cross.
+pub(super) fn n_crossing(mesh: &PolygonMesh, progress: &Progress) -> Result<usize, Cancelled> {
+    let at = |v| mesh.position(v);
+    let triangles = mesh.faces().flat_map(|face| cut(&Face::new(face), at));
+    let triangles: Vec<_> = triangles.collect();
+    let flat: Vec<_> = triangles.iter().map(|t| t.map(at)).collect();
+    let tree = Bvh::build(&flat, progress)?;
+    Ok(crossing_pairs(&tree, &triangles, at, progress)?.len())
 }
 
 /// Moves corners of faces that cross, round by round, and keeps the best round.

@@ -26,6 +26,7 @@ pub mod periods;
 pub mod place;
 mod quads;
 mod rings;
+pub mod rod;
 pub mod rounding;
 pub mod search;
 pub mod singularities;

@@ -8,6 +8,8 @@ use crate::flow;
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Attempt {
+    /// None: rings round a part that is one limb from end to end.
+    Rings,
     /// The usual ones.
     Usual,
     /// A field that follows the shape less.
@@ -44,7 +46,7 @@ impl Attempt {
     pub(super) fn settings(self, style: &flow::Settings) -> flow::Settings {
         let mut settings = style.clone();
         match self {
-            Self::Usual => {}
+            Self::Rings | Self::Usual => {}
             Self::Smoother => settings.field.alignment /= 3.0,
             Self::Closer => {
                 settings.field.alignment *= 4.0 / 3.0;

@@ -20,44 +20,61 @@ pub struct CarriedReport {
     pub length_pct: f64,
 }
 
-/// Finds the edges to be carried among the edges of the result that lie along lines.
+/// The edges that were found, and how long they and those to be carried are, in the frame of work.
+#[derive(Default)]
+pub struct Found {
+    pub edges: Vec<CarriedEdge>,
+    lengths: [f64; 2],
+}
+
+impl Found {
+    /// What is told of it, with so many edges more, of such a length, that stayed as they were.
+    pub fn report(&self, n_stayed: usize, stayed: f64) -> CarriedReport {
+        let [new, old] = self.lengths;
+        let share = (new + stayed) / (old + stayed);
+        CarriedReport {
+            n_edges: self.edges.len() + n_stayed,
+            length_pct: if share.is_finite() {
+                100.0 * share
+            } else {
+                0.0
+            },
+        }
+    }
+}
+
+/// Finds those of some edges to be carried among the edges of the result that lie along lines.
 ///
 /// Where a mesh is made symmetric, those of its positive side count, and their images.
 pub fn carried(
-    input: &Input<'_>,
+    (input, which): (&Input<'_>, &[usize]),
     (frame, plane): (&Frame, Option<Plane>),
     joined: &Joined,
     progress: &Progress<'_>,
-) -> Result<(Vec<CarriedEdge>, Option<CarriedReport>), Cancelled> {
-    if input.carried.is_empty() {
-        return Ok((Vec::new(), None));
+) -> Result<Found, Cancelled> {
+    if which.is_empty() {
+        return Ok(Found::default());
     }
-    let ends = input.carried.iter().flatten();
-    let ends: Vec<DVec3> = ends.map(|&v| input.mesh.position(v)).collect();
+    let ends = which.iter().flat_map(|&i| input.carried[i]);
+    let ends: Vec<DVec3> = ends.map(|v| input.mesh.position(v)).collect();
     let old = frame.enter(&ends);
     let mut old: Vec<_> = old.chunks_exact(2).map(|ends| [ends[0], ends[1]]).collect();
-    let mut names: Vec<usize> = (0..old.len()).collect();
+    let mut names: Vec<usize> = which.to_vec();
     if let Some(plane) = plane.filter(|plane| !plane.was_symmetric) {
-        (names, old) = symmetric(&old, plane.axis);
+        let (of, both) = symmetric(&old, plane.axis);
+        names = of.into_iter().map(|i| names[i]).collect();
+        old = both;
     }
-    let mut found = transfer::edges(&old, &joined.mesh, &joined.features, progress)?;
+    let mut edges = transfer::edges(&old, &joined.mesh, &joined.features, progress)?;
     let length = |[a, b]: [DVec3; 2]| a.distance(b);
-    let new = found
+    let new = edges
         .iter()
         .map(|c| c.ends.map(|v| joined.mesh.position(v)));
-    let share = new.map(length).sum::<f64>() / old.iter().copied().map(length).sum::<f64>();
-    for carried in &mut found {
+    let lengths = [new.map(length).sum(), old.iter().copied().map(length).sum()];
+    for carried in &mut edges {
         carried.from = names[carried.from];
     }
-    let report = CarriedReport {
-        n_edges: found.len(),
-        length_pct: if share.is_finite() {
-            100.0 * share
-        } else {
-            0.0
-        },
-    };
-    Ok((found, Some(report)))
+    Ok(Found { edges, lengths })
 }
 
 /// The edges of the positive side and their images, and which of the edges each comes from.

@@ -61,13 +61,16 @@ impl Density {
 /// How many more quads per area every vertex of an even surface wants, by the values at the
 /// vertices of the target, which it lies on.
 pub fn weights(values: &VertexMap<f64>, target: &Target, even: &TriangleMesh) -> VertexMap<f64> {
-    let weight_at = |&place: &DVec3| {
-        let closest = target.bvh().closest(place);
-        let corners = target.mesh().face(closest.face);
-        let shares = corners.iter().zip(closest.weights);
-        weight(shares.map(|(&v, share)| values[v] * share).sum())
-    };
-    even.positions().iter().map(weight_at).collect()
+    let places = even.positions().iter();
+    places.map(|&place| weight_at(values, target, place)).collect()
+}
+
+/// The same at the place of the target that is nearest to another.
+pub fn weight_at(values: &VertexMap<f64>, target: &Target, place: DVec3) -> f64 {
+    let closest = target.bvh().closest(place);
+    let corners = target.mesh().face(closest.face);
+    let shares = corners.iter().zip(closest.weights);
+    weight(shares.map(|(&v, share)| values[v] * share).sum())
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> f64 {

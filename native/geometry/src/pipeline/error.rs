@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use super::kept::{Kept, refusal};
 use super::settings::{Kind, MAX_FACES, MIN_FACES, Primitive};
 use crate::mesh::VertexId;
 use crate::progress::Cancelled;
@@ -74,21 +75,21 @@ pub enum Error {
         /// How many faces.
         n_faces: usize,
     },
-    /// The mesh has borders.
-    #[error("{}, {}: only closed meshes can be done; fill the holes first", count(*n_loops, "border loop"), count(*n_edges, "border edge"))]
-    Open {
-        /// How many loops.
-        n_loops: usize,
-        /// How many edges they have together.
-        n_edges: usize,
+    /// A size is out of range.
+    #[error("the {name} is {value}; it goes from 0 to {most}")]
+    SizeOutOfRange {
+        /// Which.
+        name: &'static str,
+        /// What was asked for.
+        value: f64,
+        /// The most that can be.
+        most: f64,
     },
-    /// The mesh has handles.
-    #[error("genus {genus}{}: only meshes without handles (genus 0) can be done; close the handles first", of_part(*part, *n_parts))]
-    Genus {
-        /// How many handles.
-        genus: i64,
-        /// Which part has them, from 1.
-        part: usize,
+    /// No part of the mesh can be done, or in a strict run not all.
+    #[error("{}", refusal(kept, *n_parts))]
+    Refused {
+        /// The parts that cannot be done, with all reasons.
+        kept: Vec<Kept>,
         /// How many parts there are.
         n_parts: usize,
     },
@@ -155,16 +156,3 @@ lift!(
     sphere::AdaptiveError => Sphere,
     deform::Error => Deform
 );
-
-fn count(n: usize, what: &str) -> String {
-    let ending = if n == 1 { "" } else { "s" };
-    format!("{n} {what}{ending}")
-}
-
-fn of_part(part: usize, n_parts: usize) -> String {
-    if n_parts == 1 {
-        String::new()
-    } else {
-        format!(" in part {part} of {n_parts}")
-    }
-}

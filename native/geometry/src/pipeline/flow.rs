@@ -1,28 +1,21 @@
 //! Quads that flow: an even surface, its flow, a cover of the sphere, the fit.
 
-use glam::DVec3;
-
 use super::Settings;
 use super::attempt::Attempt;
 use super::clock::Clock;
 use super::crosses;
 use super::even::{For, Marked, even};
 use super::flowed::{Flowed, FlowedPart, better};
-use super::probe::Halves;
-use super::{density, mirror};
+use super::probe::n_missed;
+use super::{density, mirror, rods};
 use crate::deform::{self, Flowing, Target};
 use crate::embed::{self, Covered};
-use crate::mesh::{HalfedgeMap, PolygonMesh, VertexMap};
+use crate::mesh::{HalfedgeMap, VertexMap};
 use crate::mirror::Doubled;
 use crate::progress::{Cancelled, Progress};
 use crate::sphere;
 use crate::sphere_map::SphereMap;
 use crate::{flow, pipeline};
-
-/// Points of the surface farther from the quads than this many edges are missed: a limb is cut off.
-const MOST_MISSED: f64 = 2.0;
-/// Quads farther from the surface than this many edges are a sheet between limbs (round one, 0.25).
-const MOST_ASTRAY: f64 = 1.0;
 
 /// Of the marked edges this share may be lost before other settings are tried: short ones are.
 const MOST_LOST: f64 = 0.1;
@@ -46,7 +39,7 @@ pub struct Asked<'a> {
 
 impl Asked<'_> {
     /// How many crosses of all that are asked for fall to the part, by its quads.
-    fn n_crosses(&self) -> usize {
+    pub fn n_crosses(&self) -> usize {
         let settings = self.settings;
         (settings.n_crosses * self.n_quads).div_ceil(settings.faces)
     }
@@ -83,6 +76,12 @@ pub fn flow_part(
     let (n_quads, settings) = (asked.n_quads, asked.settings);
     let part = progress.part("sphere", 0.0, 0.15);
     let wanted = Marked::new(target.mesh(), asked.marked);
+    if rods::are_clear(target) {
+        let found = rods::rings(map, (target, &wanted), asked, (clock, &part))?;
+        if found.as_ref().is_ok_and(|rings| rings.is_sound()) {
+            return Ok(found);
+        }
+    }
     let mut style = settings.flow(n_quads);
     if !wanted.is_empty() {
         style.field.alignment *= BESIDE_MARKS;
@@ -195,6 +194,10 @@ impl Ground<'_> {
             let found = found.and_then(FlowedPart::not_cut_off);
             from = to;
             best = better(best, found);
+            let is_failing = best.as_ref().map_or(true, |best| best.n_failed() > 0);
+            if attempt == Attempt::Usual && is_failing {
+                best = better(best, self.rings(clock, &progress.part("", from, from))?);
+            }
             let is_done = |best: &FlowedPart| {
                 best.n_failed() == 0 && (best.lost <= MOST_LOST || attempt != Attempt::Usual)
             };
@@ -203,6 +206,16 @@ impl Ground<'_> {
             }
         }
         Ok(best)
+    }
+
+    /// Rings, if the part is one limb from end to end.
+    fn rings(
+        &self,
+        clock: &mut Clock,
+        progress: &Progress<'_>,
+    ) -> Result<Result<FlowedPart, String>, Cancelled> {
+        let ground = (self.target, &self.wanted);
+        rods::rings(&self.even, ground, self.asked, (clock, progress))
     }
 
     /// Quads that flow by some settings, laid on the target.
@@ -250,7 +263,7 @@ impl Ground<'_> {
         let marks = (&deformed.mesh, &deformed.features[..]);
         Ok(Ok(FlowedPart {
             mirrored: self.doubled.as_ref().map(|_| Ok(())),
-            n_missed: self.n_missed(&deformed.mesh),
+            n_missed: n_missed(&deformed.mesh, self.target),
             lost: self.wanted.lost(marks, progress)?,
             deformed,
             sphere: self.sphere.clone(),
@@ -290,23 +303,6 @@ impl Ground<'_> {
         };
         let covered = embed::cover(&found.mesh, &found.sphere, &progress.part("", 0.95, 1.0))?;
         Ok((found, covered))
-    }
-
-    /// How many quads a part of the surface would take that lies far from all of them, and how many
-    /// lie far from the surface.
-    fn n_missed(&self, mesh: &PolygonMesh) -> usize {
-        let halves = Halves::of(mesh);
-        let area: f64 = halves.pieces().map(|(_, area)| area).sum();
-        let quad_area = area / mesh.n_faces() as f64;
-        let gaps = halves.gaps(self.target);
-        let is_missed = |gap: &&f64| **gap > MOST_MISSED.powi(2) * quad_area;
-        let n_far = gaps.iter().filter(is_missed).count();
-        let is_astray = |&(middle, _): &(DVec3, f64)| {
-            let gap = self.target.bvh().closest(middle).distance_squared;
-            gap > MOST_ASTRAY.powi(2) * quad_area
-        };
-        let n_astray = halves.pieces().filter(is_astray).count().div_ceil(2);
-        (n_far * mesh.n_faces()).div_ceil(gaps.len()) + n_astray
     }
 }
 

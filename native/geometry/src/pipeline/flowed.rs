@@ -73,6 +73,11 @@ impl FlowedPart {
         Ok(self)
     }
 
+    /// Whether nothing fails and marked edges are met.
+    pub fn is_sound(&self) -> bool {
+        self.n_failed() == 0 && self.lost <= WORTH
+    }
+
     pub fn is_last_resort(&self) -> bool {
         matches!(&self.flowed, Flowed::Used { attempt, .. } if attempt.is_last_resort())
     }

@@ -7,7 +7,7 @@ use super::Input;
 use super::mirror::{self, Mirror, Plane};
 use crate::clean::{self, Cleaned};
 use crate::mesh::{FaceId, FaceMap, Id, PolygonMesh, TriangleMesh, bounds};
-use crate::progress::Progress;
+use crate::progress::{Cancelled, Progress};
 
 /// A cleaned mesh in the frame of work.
 pub struct Prepared {
@@ -21,21 +21,24 @@ impl Prepared {
     /// Cleans first: welding needs the input's own coordinates, and a vertex without a face must
     /// not stretch the frame.
     pub fn new(input: &PolygonMesh, progress: &Progress<'_>) -> Result<Self, clean::Error> {
-        Ok(Self::facing(&Input::new(input), Mirror::Off, progress)?.0)
+        let cleaned = clean::clean(input, progress)?;
+        let input = Input::new(input);
+        Ok(Self::facing(cleaned, &input, Mirror::Off, progress)?.0)
     }
 
-    /// The same with the plane of symmetry that is asked for, which then goes through the frame's
-    /// origin.
+    /// The same of a clean mesh with the plane of symmetry that is asked for, which then goes through
+    /// the frame's origin.
     pub fn facing(
+        cleaned: Cleaned,
         input: &Input<'_>,
         wanted: Mirror,
         progress: &Progress<'_>,
-    ) -> Result<(Self, Option<Plane>), clean::Error> {
+    ) -> Result<(Self, Option<Plane>), Cancelled> {
         let Cleaned {
             mesh,
             source,
             report,
-        } = clean::clean(input.mesh, progress)?;
+        } = cleaned;
         progress.check()?;
         let mut frame = Frame::new(bounds(mesh.positions()));
         let mut entered = mesh.with_positions(frame.enter(mesh.positions()));
@@ -51,6 +54,23 @@ impl Prepared {
             source,
         };
         Ok((prepared, plane))
+    }
+
+    /// Some of its components alone, in the same frame.
+    pub fn only(&self, is_wanted: &[bool]) -> Self {
+        let (component, _) = self.mesh.face_components();
+        let is_wanted: Vec<bool> = component.iter().map(|&c| is_wanted[c as usize]).collect();
+        let all = Cleaned {
+            mesh: self.mesh.clone(),
+            source: self.source.clone(),
+            report: self.report,
+        };
+        let Cleaned { mesh, source, .. } = all.only(&is_wanted);
+        Self {
+            mesh,
+            source,
+            ..*self
+        }
     }
 
     /// The polygon of the input that a triangle is a piece of.
@@ -110,6 +130,11 @@ impl Frame {
             centre: low / 2.0 + high / 2.0,
             diagonal: diagonal.min(f64::MAX),
         }
+    }
+
+    /// How long the diagonal of the box is.
+    pub fn diagonal(&self) -> f64 {
+        self.diagonal
     }
 
     /// Into the frame: centre 0, diagonal 1.

@@ -5,28 +5,35 @@
 //!                                                └──────── target ───────▶ deform ┴─ join ─▶ transfer ─▶ polygons
 //! ```
 //!
-//! Every part is a closed component of genus 0 and gets its share of the faces by area. The map is
-//! made on a decimated mesh; the result is laid on the part at full resolution.
+//! Every part that is a closed component of genus 0 gets its share of the faces by area; the others
+//! stay as they were. The map is made on a decimated mesh; the result is laid on the part at full
+//! resolution.
 
 mod attempt;
 mod carried;
 mod clock;
 mod crosses;
 mod density;
+mod diagnosis;
+mod each;
 mod error;
 mod even;
 mod flow;
 mod flowed;
 mod frame;
 mod join;
+mod kept;
 mod marks;
 mod mirror;
 mod origins;
 mod part;
 mod probe;
 mod report;
+mod rods;
 mod settings;
+mod small;
 mod split;
+mod stay;
 mod verbs;
 
 pub use crate::transfer::CarriedEdge;
@@ -36,10 +43,12 @@ pub use clock::{Step, peak_memory_mb};
 pub use crosses::Cross;
 pub use error::Error;
 pub use flowed::Flowed;
+pub use kept::{Flaw, Kept, Outcome, Reason};
 pub use mirror::{Mirror, Plane, Through};
 pub use origins::{Origin, Origins};
 pub use report::{Mirrored, PartReport, Reduced, Report};
 pub use settings::{Kind, MAX_FACES, MIN_FACES, Primitive, Settings, Style};
+pub use small::{MAX_WELD, SmallParts};
 pub use verbs::{Decimated, EmbedReport, EmbeddedParts, decimate, embed};
 
 use glam::DVec3;
@@ -49,14 +58,15 @@ use crate::mesh::{PolygonMesh, VertexId};
 use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
 use crate::score::{self, Score};
-use crate::{measure, transfer};
+use crate::{clean, measure, transfer};
 use clock::Clock;
 use density::Density;
+use each::Common;
 use frame::Prepared;
 use join::Joined;
 use marks::Marks;
-use mirror::Role;
-use part::{PartJob, PartResult, Wanted};
+use split::Parts;
+use stay::{Elements, Staying};
 
 /// The version of Orbflow.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -115,6 +125,8 @@ pub struct Remeshed {
     /// Crosses of the field that the quads follow, as many as were asked for or fewer; of quads that
     /// flow alone.
     pub crosses: Vec<Cross>,
+    /// How many faces at the end are the input's own: those of parts that were kept as they were.
+    pub kept_faces: usize,
     /// What is told of the run.
     pub report: Report,
 }
@@ -122,10 +134,12 @@ pub struct Remeshed {
 /// Rebuilds a mesh by deforming a sphere into each of its parts.
 ///
 /// Keeps the topology, the frame of reference, the direction of the faces and their materials;
-/// does not keep vertices, edges or anything else that lies on them.
+/// does not keep vertices, edges or anything else that lies on them. Parts that cannot be done, and
+/// those too small for their share of the faces, stay as they were: their faces come last.
 ///
 /// # Errors
-/// What is wrong with the settings or with the mesh, or that the run was cancelled.
+/// What is wrong with the settings or with the mesh, that no part of it can be done, or that the
+/// run was cancelled.
 pub fn remesh(
     input: Input<'_>,
     settings: &Settings,
@@ -139,53 +153,68 @@ pub fn remesh(
 }
 
 fn run(
-    input: Input<'_>,
+    given: Input<'_>,
     settings: &Settings,
     predictor: &dyn OffsetPredictor,
     progress: &Progress<'_>,
 ) -> Result<Remeshed, Error> {
     let mut clock = Clock::default();
     let stage = progress.part("clean", 0.0, 0.02);
-    let facing = || Prepared::facing(&input, settings.mirror(), &stage);
+    let apart = || clean::take_apart(given.mesh, settings.weld, &stage);
+    let mut apart = clock.step("clean", apart)?;
+    let moved = apart.moved.take();
+    let moved = moved.map(|places| given.mesh.with_positions(places));
+    let mesh = moved.as_ref().unwrap_or(given.mesh);
+    let input = Input { mesh, ..given };
+    let sort = || Parts::new(&input, apart, settings, &stage);
+    let (mut parts, cleaned) = clock.step("split", sort)?;
+    let marked = parts.on_done(mesh, given.marked);
+    let marked: Vec<_> = marked.into_iter().map(|i| given.marked[i]).collect();
+    let input = Input {
+        marked: &marked,
+        ..input
+    };
+    let facing = || Prepared::facing(cleaned, &input, settings.mirror(), &stage);
     let (prepared, plane) = clock.step("clean", facing)?;
-    let marks = Marks::new((input.mesh, input.marked), &prepared.frame);
-    let density = Density::new(&input, &prepared.frame);
-    let joined = run_parts(
-        (&prepared, &marks, &density),
-        input.reduced,
-        (settings, plane),
-        (predictor, progress),
-        &mut clock,
-    )?;
+    let common = Common {
+        prepared: &prepared,
+        marks: &Marks::new((mesh, &marked), &prepared.frame),
+        density: &Density::new(&input, &prepared.frame),
+        reduced: given.reduced.filter(|_| parts.kept.is_empty()),
+        settings,
+        plane,
+        predictor,
+    };
+    let each = common.run(&mut clock, progress)?;
+    let (prepared, mut joined) = each.join(prepared, &mut parts, (mesh, settings))?;
     let stage = progress.part("transfer", 0.9, 0.92);
-    let Carried {
-        materials,
-        edges: (carried, carried_report),
-        origins,
-    } = clock.step("transfer", || {
-        Carried::new(&input, (&prepared, plane), &joined, &stage)
-    })?;
-    let mesh = joined
-        .mesh
-        .with_positions(prepared.frame.leave(joined.mesh.positions()));
+    let crosses = crosses::leave(std::mem::take(&mut joined.crosses), &prepared.frame);
+    let staying = Staying::new(mesh, parts.staying(mesh));
+    let stayed = (&parts, &staying);
+    let carrying = || elements(&input, (&prepared, plane), &mut joined, stayed, &stage);
+    let (mut made, carried) = clock.step("transfer", carrying)?;
     let stage = progress.part("score", 0.92, 1.0);
     let (score, score_refused) = match settings.score() {
         Some(wanted) => {
-            let scored = clock.step("score", || score::score(input.mesh, &mesh, &wanted, &stage));
+            let old = parts.done_alone(given.mesh);
+            let old = old.as_ref().unwrap_or(given.mesh);
+            let scored = clock.step("score", || score::score(old, &made.mesh, &wanted, &stage));
             told(scored)?
         }
         None => (None, None),
     };
+    staying.append(&given, &mut made);
     let report = Report {
         version: VERSION,
         settings: settings.clone(),
-        input: measure::topology(input.mesh, progress)?,
+        input: measure::topology(given.mesh, progress)?,
         clean: prepared.report,
-        output: measure::topology(&mesh, progress)?,
+        output: measure::topology(&made.mesh, progress)?,
         plane,
         embedding: joined.embedding,
         parts: joined.parts,
-        carried: carried_report,
+        kept: parts.kept,
+        carried,
         score,
         score_refused,
         steps: clock.into_steps(),
@@ -193,66 +222,15 @@ fn run(
     };
     progress.at(1.0)?;
     Ok(Remeshed {
-        mesh,
-        materials,
-        sphere: joined.sphere,
-        carried,
-        origins,
-        crosses: crosses::leave(joined.crosses, &prepared.frame),
+        mesh: made.mesh,
+        materials: made.materials,
+        sphere: made.sphere,
+        carried: made.carried,
+        origins: made.origins,
+        crosses,
+        kept_faces: staying.n_faces(),
         report,
     })
-}
-
-/// Does every part by itself and joins them.
-fn run_parts(
-    (prepared, marks, density): (&Prepared, &Marks, &Density),
-    reduced: Option<&PolygonMesh>,
-    (settings, plane): (&Settings, Option<Plane>),
-    (predictor, progress): (&dyn OffsetPredictor, &Progress<'_>),
-    clock: &mut Clock,
-) -> Result<Joined, Error> {
-    let parts = clock.step("split", || split::split(&prepared.mesh, progress))?;
-    progress.check()?;
-    let amounts: Vec<f64> = parts.iter().map(|part| density.amount(part)).collect();
-    let shares = split::share(&amounts, settings.faces, settings.kind.fewest_faces());
-    let reduced = reduced.filter(|_| parts.len() == 1);
-    let reduced = reduced.map(|r| r.with_positions(prepared.frame.enter(r.positions())));
-    let total = prepared.mesh.n_faces();
-    let mut done = 0;
-    let roles = match plane {
-        Some(plane) => mirror::roles(&parts, plane, progress)?,
-        None => vec![Role::Alone(None); parts.len()],
-    };
-    let mut results: Vec<Option<PartResult>> = Vec::with_capacity(parts.len());
-    for ((part, n_faces), role) in parts.into_iter().zip(shares).zip(&roles) {
-        let from = share_of_work(done, total);
-        done += part.n_faces();
-        if let Role::ImageOf(_) = role {
-            results.push(None);
-            continue;
-        }
-        let progress = progress.part("", from, share_of_work(done, total));
-        let job = PartJob {
-            part,
-            wanted: Wanted {
-                n_faces,
-                settings,
-                predictor,
-                mirror: (role, plane),
-                reduced: reduced.as_ref(),
-                marks,
-                density,
-            },
-        };
-        results.push(Some(job.run(clock, &progress)?));
-    }
-    for (i, role) in roles.iter().enumerate() {
-        if let (&Role::ImageOf(of), Some(plane)) = (role, plane) {
-            let made = results[of].as_ref();
-            results[i] = made.map(|made| mirror::image_of(made, of, plane.axis));
-        }
-    }
-    Ok(join::join(results.into_iter().flatten().collect()))
 }
 
 /// A result that cannot be scored is a result all the same; only a cancellation ends the run.
@@ -264,40 +242,42 @@ fn told(scored: Result<Score, score::Error>) -> Result<(Option<Score>, Option<St
     }
 }
 
-/// The artist's data on the result.
-struct Carried {
-    materials: Option<Vec<i32>>,
-    edges: (Vec<CarriedEdge>, Option<CarriedReport>),
-    origins: Option<Origins>,
-}
-
-impl Carried {
-    fn new(
-        input: &Input<'_>,
-        (prepared, plane): (&Prepared, Option<Plane>),
-        joined: &Joined,
-        progress: &Progress<'_>,
-    ) -> Result<Self, Cancelled> {
-        let edges = carried::carried(input, (&prepared.frame, plane), joined, progress)?;
-        if input.materials.is_none() && input.cuts.is_none() {
-            return Ok(Self {
-                materials: None,
-                edges,
-                origins: None,
-            });
-        }
-        let tree = Bvh::build_of_mesh(&prepared.mesh, progress)?;
-        let part = progress.part("", 0.0, 0.5);
-        let materials = input.materials.map(|of_faces| {
-            transfer::materials(&tree, &prepared.materials(of_faces), &joined.mesh, &part)
-        });
-        let part = progress.part("", 0.5, 1.0);
-        Ok(Self {
-            materials: materials.transpose()?,
-            edges,
-            origins: origins::origins(input, (prepared, &tree), &joined.mesh, &part)?,
-        })
+/// What was made, with the artist's data on it, and what became of edges that were to be carried.
+fn elements(
+    input: &Input<'_>,
+    (prepared, plane): (&Prepared, Option<Plane>),
+    joined: &mut Joined,
+    (parts, staying): (&Parts, &Staying),
+    progress: &Progress<'_>,
+) -> Result<(Elements, Option<CarriedReport>), Cancelled> {
+    let which = parts.on_done(input.mesh, input.carried);
+    let frame = &prepared.frame;
+    let found = carried::carried((input, &which), (frame, plane), joined, progress)?;
+    let report = (!input.carried.is_empty()).then(|| {
+        let (n, length) = staying.carried_length(input, frame);
+        found.report(n, length)
+    });
+    let mut made = Elements {
+        mesh: joined
+            .mesh
+            .with_positions(frame.leave(joined.mesh.positions())),
+        materials: None,
+        sphere: std::mem::take(&mut joined.sphere),
+        carried: found.edges,
+        origins: None,
+    };
+    if input.materials.is_none() && input.cuts.is_none() {
+        return Ok((made, report));
     }
+    let tree = Bvh::build_of_mesh(&prepared.mesh, progress)?;
+    let part = progress.part("", 0.0, 0.5);
+    let materials = input.materials.map(|of_faces| {
+        transfer::materials(&tree, &prepared.materials(of_faces), &joined.mesh, &part)
+    });
+    made.materials = materials.transpose()?;
+    let part = progress.part("", 0.5, 1.0);
+    made.origins = origins::origins(input, (prepared, &tree), &joined.mesh, &part)?;
+    Ok((made, report))
 }
 
 fn transfer_materials(

@@ -20,6 +20,16 @@ pub struct Origin {
     pub weights: [f64; 3],
 }
 
+impl Origin {
+    /// A corner of the input itself.
+    pub(super) fn of(corner: u32) -> Self {
+        Self {
+            corners: [corner; 3],
+            weights: [1.0, 0.0, 0.0],
+        }
+    }
+}
+
 /// What data of the input goes where: values mixed by the weights of an origin.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Origins {

@@ -10,6 +10,28 @@ use crate::nearest::Bvh;
 /// About how many points of the surface are asked.
 const N_PROBES: usize = 4_000;
 
+/// Points of the surface farther from the quads than this many edges are missed: a limb is cut off.
+const MOST_MISSED: f64 = 2.0;
+/// Quads farther from the surface than this many edges are a sheet between limbs (round one, 0.25).
+const MOST_ASTRAY: f64 = 1.0;
+
+/// How many quads a part of the surface would take that lies far from all of them, and how many
+/// lie far from the surface.
+pub fn n_missed(mesh: &PolygonMesh, target: &Target) -> usize {
+    let halves = Halves::of(mesh);
+    let area: f64 = halves.pieces().map(|(_, area)| area).sum();
+    let quad_area = area / mesh.n_faces() as f64;
+    let gaps = halves.gaps(target);
+    let is_missed = |gap: &&f64| **gap > MOST_MISSED.powi(2) * quad_area;
+    let n_far = gaps.iter().filter(is_missed).count();
+    let is_astray = |&(middle, _): &(DVec3, f64)| {
+        let gap = target.bvh().closest(middle).distance_squared;
+        gap > MOST_ASTRAY.powi(2) * quad_area
+    };
+    let n_astray = halves.pieces().filter(is_astray).count().div_ceil(2);
+    (n_far * mesh.n_faces()).div_ceil(gaps.len()) + n_astray
+}
+
 /// Quads cut in halves along their first diagonal.
 pub struct Halves(Vec<[DVec3; 3]>);
 

@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::carried::CarriedReport;
 use super::clock::Step;
 use super::flowed::Flowed;
+use super::kept::Kept;
 use super::mirror::Plane;
 use super::settings::Settings;
 use crate::measure::Topology;
@@ -28,8 +29,10 @@ pub struct Report {
     pub plane: Option<Plane>,
     /// The embeddings of all parts together.
     pub embedding: embed::Report,
-    /// Each part, in the order of its first face.
+    /// Each part that was remeshed, in the order of its first face.
     pub parts: Vec<PartReport>,
+    /// The parts that were not, in that order too, with all reasons.
+    pub kept: Vec<Kept>,
     /// What became of the edges that were to be carried; none where there were none.
     pub carried: Option<CarriedReport>,
     /// How good the result is; none when it was not asked for or could not be measured.

@@ -4,8 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::Error;
 use super::mirror::Mirror;
+use super::small::SmallParts;
 use crate::elementary::powf;
-use crate::{flow, score};
+use crate::{clean, flow, score};
 
 /// The fewest faces that can be asked for: those of a tetrahedron.
 pub const MIN_FACES: usize = 4;
@@ -147,6 +148,16 @@ pub struct Settings {
     pub sharp_angle: f64,
     /// In which plane the quads that flow are each other's images; nothing else asks for it.
     pub mirror: Mirror,
+    /// What becomes of parts that are too small.
+    pub small_parts: SmallParts,
+    /// Parts that measure less than so many percent of the whole mesh's diagonal are small; at 0
+    /// only those are whose share of the faces is too few to close them.
+    pub small_size: f64,
+    /// Up to which gap borders that lie on each other are welded, as a share of the diagonal; none
+    /// welds equal points alone.
+    pub weld: Option<f64>,
+    /// Whether a part that cannot be done, and is not merely small, ends the run.
+    pub strict: bool,
     /// Where the adaptive primitive's samples start; equal seeds give equal bytes.
     pub seed: u64,
     /// How many threads to use; 0 uses every core. The result does not depend on it.
@@ -167,6 +178,10 @@ impl Default for Settings {
             style: Style::default(),
             sharp_angle: 40.0,
             mirror: Mirror::default(),
+            small_parts: SmallParts::default(),
+            small_size: 0.0,
+            weld: Some(clean::WELD),
+            strict: false,
             seed: 0,
             threads: 0,
             n_crosses: 0,
@@ -220,6 +235,7 @@ impl Settings {
     pub(super) fn check(&self) -> Result<(), Error> {
         check_faces(self.faces)?;
         self.style.check()?;
+        self.check_sizes()?;
         let degrees = self.sharp_angle;
         if !(0.0..=180.0).contains(&degrees) {
             return Err(Error::AngleOutOfRange { degrees });

@@ -1,51 +1,276 @@
-//! Splits a mesh into parts that one sphere can cover, and shares the faces among them.
+//! Takes the input apart and says what is done with every part: the one place that does.
 //!
-//! Today a part is a closed component of genus 0; a mesh with a border or with handles is refused
-//! with its numbers. Filling borders and cutting handles (METHOD 3) belong here: they turn such a
-//! mesh into closed parts of genus 0 with tagged faces, which `join` takes out again.
+//! A part is what hangs together over edges. One that is closed and has no handles is remeshed; any
+//! other stays as it was, with every reason, and so do parts too small for their share. Filling
+//! borders and cutting handles belong here: they turn a part into closed ones with tagged faces,
+//! which `join` takes out again.
 
-use super::Error;
-use crate::mesh::TriangleMesh;
-use crate::progress::Progress;
+use std::collections::HashMap;
 
-/// The components of a mesh, closed and of genus 0, in the order of their first faces.
-pub fn split(whole: &TriangleMesh, progress: &Progress<'_>) -> Result<Vec<TriangleMesh>, Error> {
-    refuse_borders(whole)?;
-    progress.check()?;
-    let (_, n) = whole.face_components();
-    progress.check()?;
-    if n == 1 {
-        // Whole, it keeps the numbers of its vertices.
-        return Ok(vec![checked(whole.clone(), [1, 1])?]);
-    }
-    let parts = whole.components(progress)?;
-    let numbered = parts.into_iter().enumerate();
-    numbered
-        .map(|(index, part)| checked(part, [index + 1, n]))
-        .collect()
+use super::density::Density;
+use super::frame::{Frame, bits};
+use super::kept::{Flaw, Kept, Outcome, Reason};
+use super::stay::some_faces;
+use super::{Error, Input, Settings, diagnosis, small};
+use crate::clean::{Apart, Cleaned};
+use crate::mesh::{FaceId, FaceMap, PolygonMesh, TriangleMesh, VertexId, VertexMap, bounds};
+use crate::progress::{Cancelled, Progress};
+
+/// The parts of a mesh.
+pub struct Parts {
+    /// Those that are remeshed.
+    names: Vec<usize>,
+    /// Those that are not.
+    pub kept: Vec<Kept>,
+    /// How many parts there are.
+    n: usize,
+    /// The part of each face of the input, if it belongs to one.
+    part_of: FaceMap<Option<u32>>,
 }
 
-/// A part, if it has no handles.
-fn checked(mesh: TriangleMesh, [part, n_parts]: [usize; 2]) -> Result<TriangleMesh, Error> {
-    match (2 - mesh.euler_number()) / 2 {
-        0 => Ok(mesh),
-        genus => Err(Error::Genus {
-            genus,
-            part,
-            n_parts,
-        }),
+/// One part.
+pub struct Part {
+    /// Which component of the surfaces it is; none where it is no surface.
+    pub surface: Option<usize>,
+    /// Its faces, in order.
+    pub faces: Vec<FaceId>,
+    /// All that keeps it from being remeshed.
+    pub reasons: Vec<Reason>,
+}
+
+impl Parts {
+    /// Looks at every part and chooses those to be remeshed, and their triangles.
+    ///
+    /// # Errors
+    /// [`Error::Refused`] where no part can be done, or in strict runs not every one that is not
+    /// merely small; when cancelled.
+    pub fn new(
+        input: &Input<'_>,
+        apart: Apart,
+        settings: &Settings,
+        progress: &Progress<'_>,
+    ) -> Result<(Self, Cleaned), Error> {
+        let (component, n) = apart.mesh.face_components();
+        let mut parts = diagnosis::parts((input.mesh, settings), &apart, (&component, n));
+        progress.check()?;
+        if parts.len() > 1 {
+            let amounts = amounts(input, &apart.mesh, progress)?;
+            small::mark(&mut parts, input.mesh, &amounts, settings);
+        }
+        Self::chosen(input.mesh, apart, (&component, n), parts, settings)
+    }
+
+    /// The same where every part, however small, has to be done.
+    ///
+    /// # Errors
+    /// As above.
+    pub fn all(mesh: &PolygonMesh, apart: Apart) -> Result<Cleaned, Error> {
+        let settings = Settings {
+            strict: true,
+            ..Settings::default()
+        };
+        let (component, n) = apart.mesh.face_components();
+        let parts = diagnosis::parts((mesh, &settings), &apart, (&component, n));
+        let chosen = Self::chosen(mesh, apart, (&component, n), parts, &settings);
+        chosen.map(|(_, cleaned)| cleaned)
+    }
+
+    fn chosen(
+        mesh: &PolygonMesh,
+        apart: Apart,
+        (component, n_surfaces): (&[u32], usize),
+        parts: Vec<Part>,
+        settings: &Settings,
+    ) -> Result<(Self, Cleaned), Error> {
+        let mut is_done = vec![false; n_surfaces];
+        let mut chosen = Self {
+            names: Vec::new(),
+            kept: Vec::new(),
+            n: parts.len(),
+            part_of: FaceMap::filled(mesh.n_faces(), None),
+        };
+        for (i, part) in parts.into_iter().enumerate() {
+            for &face in &part.faces {
+                chosen.part_of[face] = Some(i as u32);
+            }
+            match part.surface {
+                Some(surface) if part.reasons.is_empty() => {
+                    is_done[surface] = true;
+                    chosen.names.push(i);
+                }
+                _ => chosen.kept.push(kept(i, part, settings)),
+            }
+        }
+        chosen.check(settings)?;
+        chosen.attach(mesh);
+        let cleaned = Cleaned {
+            mesh: apart.mesh,
+            source: apart.source,
+            report: apart.report,
+        };
+        if chosen.names.len() == n_surfaces {
+            return Ok((chosen, cleaned));
+        }
+        let is_done: Vec<bool> = component.iter().map(|&c| is_done[c as usize]).collect();
+        Ok((chosen, cleaned.only(&is_done)))
+    }
+
+    /// Whether what is done is enough.
+    fn check(&mut self, settings: &Settings) -> Result<(), Error> {
+        let is_bad = |kept: &Kept| !kept.is_small();
+        if self.names.is_empty() || settings.strict && self.kept.iter().any(is_bad) {
+            return Err(Error::Refused {
+                kept: std::mem::take(&mut self.kept),
+                n_parts: self.n,
+            });
+        }
+        Ok(())
+    }
+
+    /// Gives faces that cleaning drops, such as repeated ones, to the part that stays as it was and
+    /// has all their corners but one.
+    fn attach(&mut self, mesh: &PolygonMesh) {
+        let loose: Vec<FaceId> = mesh
+            .face_ids()
+            .filter(|&face| self.part_of[face].is_none())
+            .collect();
+        if loose.is_empty() || self.kept.is_empty() {
+            return;
+        }
+        let mut parts = HashMap::new();
+        for face in mesh.face_ids().filter(|&face| !self.is_done(face)) {
+            let Some(part) = self.part_of[face] else {
+                continue;
+            };
+            for &v in mesh.face(face) {
+                parts.entry(bits(mesh.position(v))).or_insert(part);
+            }
+        }
+        for face in loose {
+            let corners = mesh.face(face);
+            let of_corner = |v: &VertexId| parts.get(&bits(mesh.position(*v))).copied();
+            let found: Vec<u32> = corners.iter().filter_map(of_corner).collect();
+            let is_one = found.windows(2).all(|pair| pair[0] == pair[1]);
+            if let (Some(&part), true) = (found.first(), is_one && found.len() + 1 >= corners.len())
+            {
+                self.part_of[face] = Some(part);
+                let at = self
+                    .kept
+                    .binary_search_by_key(&(part as usize), |kept| kept.part);
+                if let Ok(at) = at {
+                    self.kept[at].n_faces += 1;
+                }
+            }
+        }
+    }
+
+    /// Keeps those of the parts that were to be done whose runs failed, by their places among these
+    /// and the reasons.
+    ///
+    /// # Errors
+    /// As above.
+    pub fn keep_failed(
+        &mut self,
+        mesh: &PolygonMesh,
+        failed: Vec<(usize, String)>,
+        settings: &Settings,
+    ) -> Result<(), Error> {
+        let mut is_left = vec![true; self.names.len()];
+        for (at, text) in failed {
+            is_left[at] = false;
+            let name = self.names[at];
+            let is_own = |face: &FaceId| self.part_of[*face] == Some(name as u32);
+            let faces: Vec<FaceId> = mesh.face_ids().filter(is_own).collect();
+            let reason = Reason::new(mesh, &faces, &[], Flaw::Failed, text);
+            self.kept.push(Kept {
+                part: name,
+                n_faces: faces.len(),
+                outcome: Outcome::Kept,
+                reasons: vec![reason],
+            });
+        }
+        self.kept.sort_by_key(|kept| kept.part);
+        let mut left = is_left.iter();
+        self.names.retain(|_| left.next() == Some(&true));
+        self.check(settings)
+    }
+
+    /// The faces of the input that go out as they were, in order.
+    pub fn staying(&self, mesh: &PolygonMesh) -> Vec<FaceId> {
+        let stays = |part: u32| {
+            let at = self
+                .kept
+                .binary_search_by_key(&(part as usize), |kept| kept.part);
+            at.is_ok_and(|at| self.kept[at].outcome == Outcome::Kept)
+        };
+        let is_staying = |face: &FaceId| self.part_of[*face].is_some_and(stays);
+        mesh.face_ids().filter(is_staying).collect()
+    }
+
+    /// Those of some edges of the input that have both ends on what is remeshed, by their places.
+    pub fn on_done(&self, mesh: &PolygonMesh, edges: &[[VertexId; 2]]) -> Vec<usize> {
+        if self.kept.is_empty() || edges.is_empty() {
+            return (0..edges.len()).collect();
+        }
+        let mut is_there = VertexMap::filled(mesh.n_vertices(), false);
+        for face in mesh.face_ids().filter(|&face| self.is_done(face)) {
+            for &v in mesh.face(face) {
+                is_there[v] = true;
+            }
+        }
+        let lies_there = |&i: &usize| edges[i].iter().all(|&v| is_there[v]);
+        (0..edges.len()).filter(lies_there).collect()
+    }
+
+    /// The faces of the input that are remeshed, where these are not all.
+    pub fn done_alone(&self, mesh: &PolygonMesh) -> Option<PolygonMesh> {
+        (!self.kept.is_empty()).then(|| some_faces(mesh, |face| self.is_done(face)))
+    }
+
+    /// Whether a face of the input is remeshed.
+    fn is_done(&self, face: FaceId) -> bool {
+        let is_done = |part: u32| self.names.binary_search(&(part as usize)).is_ok();
+        self.part_of[face].is_some_and(is_done)
     }
 }
 
-fn refuse_borders(whole: &TriangleMesh) -> Result<(), Error> {
-    let loops = whole.border_loops();
-    if loops.is_empty() {
-        return Ok(());
+fn kept(part: usize, of: Part, settings: &Settings) -> Kept {
+    let mut kept = Kept {
+        part,
+        n_faces: of.faces.len(),
+        outcome: Outcome::Kept,
+        reasons: of.reasons,
+    };
+    if kept.is_small() {
+        kept.outcome = settings.small_parts.outcome();
     }
-    Err(Error::Open {
-        n_loops: loops.len(),
-        n_edges: loops.iter().map(Vec::len).sum(),
-    })
+    kept
+}
+
+/// The area of each surface, larger where smaller quads are wanted: what shares go by.
+fn amounts(
+    input: &Input<'_>,
+    mesh: &TriangleMesh,
+    progress: &Progress<'_>,
+) -> Result<Vec<f64>, Cancelled> {
+    let frame = Frame::new(bounds(mesh.positions()));
+    let density = Density::new(input, &frame);
+    let amount =
+        |part: TriangleMesh| density.amount(&part.with_positions(frame.enter(part.positions())));
+    let parts = mesh.components(progress)?;
+    Ok(parts.into_iter().map(amount).collect())
+}
+
+/// The components of a mesh, in the order of their first faces; a single one is the mesh itself,
+/// with the numbers of its vertices.
+pub fn components(
+    whole: &TriangleMesh,
+    progress: &Progress<'_>,
+) -> Result<Vec<TriangleMesh>, Cancelled> {
+    match whole.face_components().1 {
+        1 => Ok(vec![whole.clone()]),
+        _ => whole.components(progress),
+    }
 }
 
 /// Shares `n_faces` among parts by their weights; each gets at least `least`.
@@ -77,59 +302,6 @@ pub fn share(weights: &[f64], n_faces: usize, least: usize) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::VertexId;
-    use crate::shapes;
-
-    fn joined(meshes: &[TriangleMesh]) -> TriangleMesh {
-        let mut positions = Vec::new();
-        let mut faces = Vec::new();
-        for mesh in meshes {
-            let start = positions.len() as u32;
-            positions.extend_from_slice(mesh.positions());
-            faces.extend(
-                mesh.faces()
-                    .iter()
-                    .map(|f| f.map(|v| VertexId(v.0 + start))),
-            );
-        }
-        TriangleMesh::new(positions, faces).unwrap()
-    }
-
-    #[test]
-    fn one_closed_part_is_split_into_itself() {
-        let mesh = shapes::blob(3, 4);
-        let parts = split(&mesh, &Progress::none()).unwrap();
-        assert_eq!(parts.len(), 1);
-        assert_eq!(parts[0], mesh);
-    }
-
-    #[test]
-    fn components_keep_their_faces_in_order() {
-        let whole = joined(&[shapes::cuboid(2), shapes::sphere(3)]);
-        let parts = split(&whole, &Progress::none()).unwrap();
-        assert_eq!(
-            parts.iter().map(TriangleMesh::n_faces).collect::<Vec<_>>(),
-            [48, 108]
-        );
-        let triangles = parts
-            .iter()
-            .flat_map(|p| p.face_ids().map(|face| p.triangle(face)));
-        for (face, triangle) in whole.face_ids().zip(triangles) {
-            assert_eq!(triangle, whole.triangle(face));
-        }
-    }
-
-    #[test]
-    fn an_open_mesh_is_refused_with_its_borders_counted() {
-        let mut faces = shapes::sphere(3).faces().to_vec();
-        faces.pop();
-        let mesh = TriangleMesh::new(shapes::sphere(3).positions().to_vec(), faces).unwrap();
-        let message = split(&mesh, &Progress::none()).unwrap_err().to_string();
-        assert!(
-            message.starts_with("1 border loop, 3 border edges: "),
-            "{message}"
-        );
-    }
 
     #[test]
     fn shares_follow_the_weights_sum_up_and_keep_the_least() {

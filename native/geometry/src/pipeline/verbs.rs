@@ -8,8 +8,8 @@ use super::frame::Prepared;
 use super::join::join_embeddings;
 use super::part::embed_mesh;
 use super::settings::check_faces;
-use super::split::split;
-use super::{Error, Input, VERSION, share_of_work, thread_pool, transfer_materials};
+use super::split::{Parts, components};
+use super::{Error, Input, Mirror, VERSION, share_of_work, thread_pool, transfer_materials};
 use crate::embed::OffsetPredictor;
 use crate::measure::{self, Topology};
 use crate::mesh::PolygonMesh;
@@ -66,8 +66,14 @@ fn embed_parts(
 ) -> Result<EmbeddedParts, Error> {
     let mut clock = Clock::default();
     let stage = progress.part("clean", 0.0, 0.02);
-    let prepared = clock.step("clean", || Prepared::new(mesh, &stage))?;
-    let parts = clock.step("split", || split(&prepared.mesh, progress))?;
+    let apart = || clean::take_apart(mesh, Some(clean::WELD), &stage);
+    let mut apart = clock.step("clean", apart)?;
+    let moved = apart.moved.take();
+    let moved = moved.map(|places| mesh.with_positions(places));
+    let cleaned = Parts::all(mesh, apart)?;
+    let input = Input::new(moved.as_ref().unwrap_or(mesh));
+    let (prepared, _) = Prepared::facing(cleaned, &input, Mirror::Off, &stage)?;
+    let parts = clock.step("split", || components(&prepared.mesh, progress))?;
     let total = prepared.mesh.n_faces();
     let mut done = 0;
     let mut maps = Vec::with_capacity(parts.len());

@@ -1,0 +1,101 @@
+//! What is asked for about the parts of a mesh, and what is told of those that were not remeshed.
+
+use clap::Args;
+use orbflow_geometry::pipeline::{Kept, Outcome, Settings, SmallParts};
+
+use crate::parsers::{percent, small_parts, weld};
+use crate::place::Place;
+
+/// The most lines about single parts.
+const MOST_LINES: usize = 20;
+
+/// What becomes of parts that are small, open or cannot be done.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct Parts {
+    /// What becomes of parts that are too small: they stay as they were, or go
+    #[arg(long, default_value = SmallParts::default().name(), value_parser = small_parts())]
+    pub small_parts: SmallParts,
+    /// Parts that measure less than so many percent of the mesh's diagonal are small; at 0 only
+    /// those whose share of the faces is too few to close them
+    #[arg(long, value_name = "PERCENT", default_value_t = Settings::default().small_size, value_parser = percent)]
+    pub small_size: f64,
+    /// Weld borders that lie on each other up to a gap of this share of the mesh's diagonal, 0.01 at
+    /// most; off: weld equal points alone
+    #[arg(long, value_name = "D|off", default_value = "1e-5", value_parser = weld)]
+    pub weld: Weld,
+    /// End with 3 where a part cannot be done, instead of leaving it as it was
+    #[arg(long)]
+    pub strict: bool,
+}
+
+/// A weld distance; none welds equal points alone.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Weld(pub Option<f64>);
+
+impl Parts {
+    /// Settings with what is asked for here.
+    pub fn asked(&self, settings: Settings) -> Settings {
+        Settings {
+            small_parts: self.small_parts,
+            small_size: self.small_size,
+            weld: self.weld.0,
+            strict: self.strict,
+            ..settings
+        }
+    }
+}
+
+/// Says on standard error which parts were not remeshed, where they are and why.
+pub fn tell(place: &Place, kept: &[Kept]) {
+    for line in lines(kept) {
+        eprintln!("{place}: {line}");
+    }
+}
+
+/// A line for each reason of parts that cannot be done, and one for all that are small.
+pub fn lines(kept: &[Kept]) -> Vec<String> {
+    let (small, bad): (Vec<_>, Vec<_>) = kept.iter().partition(|kept| kept.is_small());
+    let reasons = bad.iter().flat_map(|kept| {
+        kept.reasons.iter().map(|reason| {
+            let [x, y, z] = reason.place.map(rounded);
+            let (part, faces) = (kept.part + 1, count(kept.n_faces, "face"));
+            format!("part {part} ({faces}): {}, at ({x}, {y}, {z})", reason.text)
+        })
+    });
+    let mut lines: Vec<String> = reasons.collect();
+    if lines.len() > MOST_LINES {
+        let more = lines.len() - MOST_LINES;
+        lines.truncate(MOST_LINES);
+        lines.push(format!("and {} more", count(more, "reason")));
+    }
+    if !bad.is_empty() {
+        let faces: usize = bad.iter().map(|kept| kept.n_faces).sum();
+        let [parts, faces] = [count(bad.len(), "part"), count(faces, "face")];
+        lines.push(format!("{parts} with {faces} cannot be done"));
+    }
+    lines.extend(told_of_small(&small));
+    lines
+}
+
+fn told_of_small(small: &[&Kept]) -> Option<String> {
+    let first = small.first()?;
+    let faces: usize = small.iter().map(|kept| kept.n_faces).sum();
+    let [parts, faces] = [count(small.len(), "part"), count(faces, "face")];
+    let what = match first.outcome {
+        Outcome::Kept => "small: kept as they were",
+        Outcome::Dropped => "small: dropped",
+    };
+    Some(format!(
+        "{parts} with {faces} too {what}; the first: {}",
+        first.text()
+    ))
+}
+
+fn count(n: usize, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
+}
+
+/// A coordinate with six digits.
+fn rounded(x: f64) -> f64 {
+    format!("{x:.5e}").parse().unwrap_or(x)
+}

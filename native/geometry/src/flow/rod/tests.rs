@@ -1,0 +1,1 @@
+//! Rods of known shapes.

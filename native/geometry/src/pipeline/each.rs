@@ -1,0 +1,161 @@
+//! Does every part by itself.
+
+use super::clock::Clock;
+use super::density::Density;
+use super::frame::Prepared;
+use super::join::{self, Joined};
+use super::marks::Marks;
+use super::mirror::{self, Plane, Role};
+use super::part::{PartJob, PartResult, Wanted};
+use super::report::Mirrored;
+use super::split::{Parts, components, share};
+use super::{Error, Settings, share_of_work};
+use crate::embed::OffsetPredictor;
+use crate::mesh::{PolygonMesh, TriangleMesh};
+use crate::progress::Progress;
+
+/// All that the parts have in common.
+pub struct Common<'a> {
+    pub prepared: &'a Prepared,
+    pub marks: &'a Marks,
+    pub density: &'a Density,
+    /// The mesh as somebody else reduced it, where it is one part.
+    pub reduced: Option<&'a PolygonMesh>,
+    pub settings: &'a Settings,
+    pub plane: Option<Plane>,
+    pub predictor: &'a dyn OffsetPredictor,
+}
+
+/// What became of every part, or why its run failed.
+pub struct Each(Vec<Result<PartResult, String>>);
+
+impl Common<'_> {
+    /// Runs one part after the other. A part that fails does not stop the others.
+    ///
+    /// # Errors
+    /// When cancelled.
+    pub fn run(&self, clock: &mut Clock, progress: &Progress<'_>) -> Result<Each, Error> {
+        let mesh = &self.prepared.mesh;
+        let parts = clock.step("split", || components(mesh, progress))?;
+        let amounts: Vec<f64> = parts.iter().map(|part| self.density.amount(part)).collect();
+        let settings = self.settings;
+        let shares = share(&amounts, settings.faces, settings.kind.fewest_faces());
+        let reduced = self.reduced.filter(|_| parts.len() == 1);
+        let entered = |mesh: &PolygonMesh| self.prepared.frame.enter(mesh.positions());
+        let reduced = reduced.map(|mesh| mesh.with_positions(entered(mesh)));
+        let roles = match self.plane {
+            Some(plane) => mirror::roles(&parts, plane, progress)?,
+            None => vec![Role::Alone(None); parts.len()],
+        };
+        let mut work = Work {
+            common: self,
+            reduced: reduced.as_ref(),
+            clock,
+            progress,
+            done: 0,
+        };
+        let mut made = Vec::with_capacity(parts.len());
+        let mut images = Vec::new();
+        for ((part, n_faces), role) in parts.into_iter().zip(shares).zip(&roles) {
+            if let &Role::ImageOf(of) = role {
+                images.push((made.len(), of, part, n_faces));
+                made.push(Err(String::new()));
+            } else {
+                made.push(work.run(part, n_faces, role)?);
+            }
+        }
+        for (at, of, part, n_faces) in images {
+            made[at] = match (&made[of], self.plane) {
+                (Ok(of_made), Some(plane)) => Ok(mirror::image_of(of_made, of, plane.axis)),
+                _ => {
+                    let alone = "the part whose image it is could not be done";
+                    work.run(part, n_faces, &Role::Alone(Some(alone.to_owned())))?
+                }
+            };
+        }
+        Ok(Each(made))
+    }
+}
+
+/// The parts on their way.
+struct Work<'a, 'b> {
+    common: &'a Common<'a>,
+    reduced: Option<&'a PolygonMesh>,
+    clock: &'a mut Clock,
+    progress: &'a Progress<'b>,
+    /// How many triangles are done.
+    done: usize,
+}
+
+impl Work<'_, '_> {
+    fn run(
+        &mut self,
+        part: TriangleMesh,
+        n_faces: usize,
+        role: &Role,
+    ) -> Result<Result<PartResult, String>, Error> {
+        let common = self.common;
+        let total = common.prepared.mesh.n_faces();
+        let from = share_of_work(self.done, total);
+        self.done += part.n_faces();
+        let progress = self
+            .progress
+            .part("", from, share_of_work(self.done, total));
+        let job = PartJob {
+            part,
+            wanted: Wanted {
+                n_faces,
+                settings: common.settings,
+                predictor: common.predictor,
+                mirror: (role, common.plane),
+                reduced: self.reduced,
+                marks: common.marks,
+                density: common.density,
+            },
+        };
+        match job.run(self.clock, &progress) {
+            Err(error) if error.is_cancelled() => Err(error),
+            Err(error) => Ok(Err(error.to_string())),
+            Ok(made) => Ok(Ok(made)),
+        }
+    }
+}
+
+impl Each {
+    /// Joins what was made; parts that failed stay as they were, and go from the mesh that data is
+    /// carried from.
+    ///
+    /// # Errors
+    /// [`Error::Refused`] where too few parts are left.
+    pub fn join(
+        self,
+        mut prepared: Prepared,
+        parts: &mut Parts,
+        (mesh, settings): (&PolygonMesh, &Settings),
+    ) -> Result<(Prepared, Joined), Error> {
+        let is_left: Vec<bool> = self.0.iter().map(Result::is_ok).collect();
+        let mut made = Vec::new();
+        let mut failed = Vec::new();
+        for (at, part) in self.0.into_iter().enumerate() {
+            match part {
+                Ok(part) => made.push(part),
+                Err(text) => failed.push((at, text)),
+            }
+        }
+        if !failed.is_empty() {
+            parts.keep_failed(mesh, failed, settings)?;
+            prepared = prepared.only(&is_left);
+            made.iter_mut().for_each(|part| part.rename_image(&is_left));
+        }
+        Ok((prepared, join::join(made)))
+    }
+}
+
+impl PartResult {
+    /// Counts the part whose image it is among those that are left.
+    fn rename_image(&mut self, is_left: &[bool]) {
+        if let Some(Mirrored::Image { of }) = &mut self.report.mirrored {
+            *of = is_left[..*of].iter().filter(|&&left| left).count();
+        }
+    }
+}
