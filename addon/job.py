@@ -97,7 +97,7 @@ def remesh(
         except orbflow_native.Cancelled:
             raise
         except orbflow_native.InputError as error:
-            outcomes.append(Failed(task.name, str(error), getattr(error, "kept", []), task))
+            outcomes.append(Failed(task.name, str(error), error.kept, task))
         except Exception as error:
             text = str(error) or type(error).__name__
             outcomes.append(Failed(task.name, text, task=task))

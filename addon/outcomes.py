@@ -48,9 +48,7 @@ def done(outcome: Done, report: dict[str, Any], old: Before) -> Told:
     """Tells of a task that was done; `report` is what the panel keeps of it."""
     task = outcome.task
     thing = bpy.data.objects[task.name, None]
-    for name in ("kept", "warnings"):
-        report.setdefault(name, [])
-    report["clean"].setdefault("n_seam_welded", 0)
+    report.setdefault("warnings", [])
     report["n_hidden"] = old.n_hidden
     report["nodes"] = [each.name for each in thing.modifiers if _has_nodes(each)]
     if old.print:
