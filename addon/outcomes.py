@@ -9,6 +9,7 @@ import numpy as np
 
 from . import attributes, runs, spots, words
 from .job import Done, Failed
+from .mesh_arrays import MeshArrays
 from .runs import Left, Line, Print
 from .spots import Complaint, Numbers
 
@@ -71,7 +72,7 @@ def refused(failed: Failed) -> Told:
     thing, task = runs.local(failed.name), failed.task
     complaints: list[Complaint] = []
     if task:
-        numbers = _numbers(thing, failed)
+        numbers = _numbers(thing, task.arrays)
         complaints = spots.complaints(failed.kept, numbers, len(failed.kept))
     said = "; ".join(each.words for each in complaints)
     if thing and _is_only_one(failed.name):
@@ -86,9 +87,8 @@ def _line(name: str, state: str, text: str) -> Line:
     return Line(name, state, text, thing and runs.print_of(thing.data))
 
 
-def _numbers(thing: bpy.types.Object | None, failed: Failed) -> Numbers:
+def _numbers(thing: bpy.types.Object | None, arrays: MeshArrays) -> Numbers:
     """What the core calls by number is of the object's mesh, unless modifiers made another."""
-    arrays = failed.task.arrays
     counts = len(arrays.positions), len(arrays.loop_start)
     if thing and counts == (len(thing.data.vertices), len(thing.data.polygons)):
         return spots.same(arrays)

@@ -113,9 +113,9 @@ def test_the_add_on_offers_the_mirrors_of_the_core(operator: Any) -> None:  # no
 
 @pytest.mark.parametrize(("name", "unit"), [("small_size", 1.0), ("weld", 100.0)])
 def test_the_core_takes_the_largest_that_the_add_on_offers(
-    operator: Any,
+    operator: Any,  # noqa: ANN401
     name: str,
-    unit: float,  # noqa: ANN401
+    unit: float,
 ) -> None:
     most = operator[name].hard_max / unit
     orbflow_native.remesh(*ball(), faces=24, score_samples=0, **{name: most * (1 - 1e-6)})
