@@ -61,8 +61,10 @@ def done(outcome: Done, report: dict[str, Any], old: Before) -> Told:
             # The mesh is a part of the result.
             numbers = spots.gone(task.arrays)
         complaints = spots.complaints(report["kept"], numbers, n_parts)
-        runs.remember_left(thing, Left("", complaints))
-    state = "warned" if words.is_warned(report) else "done"
+        is_there = any(part["outcome"] == "kept" for part in report["kept"])
+        title = f"Some parts were left {'as they were' if is_there else 'out'}"
+        runs.remember_left(thing, Left(title, False, complaints))
+    state = "warned" if words.warnings(report) else "done"
     lines = [_line(name, state, words.line(report)) for name in (task.name, *task.others)]
     return Told(lines, words.sentence(report), words.is_grave(report))
 
@@ -76,7 +78,8 @@ def refused(failed: Failed) -> Told:
         complaints = spots.complaints(failed.kept, numbers, len(failed.kept))
     said = "; ".join(each.words for each in complaints)
     if thing and _is_only_one(failed.name):
-        runs.remember_left(thing, Left(said or failed.error, complaints))
+        told = complaints or [Complaint(failed.error, failed.error, None)]
+        runs.remember_left(thing, Left("{} was left as it was", True, told))
     text = f"{said} \nIn exact words: {failed.error}" if said else failed.error
     names = (failed.name, *(task.others if task else ()))
     return Told([_line(name, "refused", said or failed.error) for name in names], text, True)

@@ -126,9 +126,9 @@ def test_every_part_has_a_row_until_these_are_many(
     shown = [text for text, _ in panel_of(thing, width=1000).drawn if "hole" in text]
     assert shown == ["DOT part of 120 faces: has 1 hole (open edges)"] * 2
     told = refuse(hole, reason("flat", "no volume", thing), n_parts=1200)
-    assert f"{thing.name}: 1,200 parts have holes (open edges); 1,200 parts are flat" in told
+    assert f"{thing.name}: 1,200 parts with holes (open edges); 1,200 parts flat" in told
     shown = [text for text, _ in panel_of(thing, width=1000).drawn if " parts" in text]
-    assert shown == ["DOT 1,200 parts have holes (open edges)", "DOT 1,200 parts are flat"]
+    assert shown == ["DOT 1,200 parts with holes (open edges)", "DOT 1,200 parts flat"]
 
 
 def test_show_selects_edges_and_reveals_them_and_their_faces_alone(

@@ -111,7 +111,8 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
     def _finish(self, ended: list[Outcome]) -> set[str]:
         """Writes the results; the one place where errors become reports."""
         told = [_write(each) for each in ended]
-        runs.remember_lines([line for each in told for line in each.lines] * (len(told) > 1))
+        lines = [line for each in told for line in each.lines]
+        runs.remember_lines(lines if len(told) > 1 else [])
         is_done = any(each.state != "refused" for each in told)
         for level, text in _reports(told):
             self.report({level}, text)
