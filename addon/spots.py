@@ -95,7 +95,7 @@ def complaints(kept: list[dict[str, Any]], numbers: Numbers, n_parts: int) -> li
 def _complaint(group: list[_Reason], numbers: Numbers, n_parts: int) -> Complaint:
     (part, reason), *others = group
     if others:
-        told = f"{len(group):,} parts {words.reason_of_many(reason['kind'])}"
+        told = f"{len(group):,} parts {words.OF_MANY[reason['kind']]}"
     elif n_parts > 1:
         told = f"part of {words.count(part['n_faces'], 'face')}: {words.reason(reason)}"
     else:

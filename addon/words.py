@@ -22,8 +22,8 @@ _CLEANED = (
     ("n_duplicates", ("face that is there twice", "faces that are there twice")),
     ("n_doubled", ("triangle back to back with another", "triangles back to back with others")),
 )
-# What parts are that are left, by the kind of reason.
-_OF_MANY = {
+#: What parts are that were left, by the kind of reason.
+OF_MANY = {
     "border": "with holes (open edges)",
     "handles": "with a hole through it like a ring or cup handle",
     "shared-edges": "with edges at which 3 or more faces meet",
@@ -83,11 +83,6 @@ def reason(reason: dict[str, Any]) -> str:
     return f"could not be done: {reason['text']}"
 
 
-def reason_of_many(kind: str) -> str:
-    """What parts are that were left for one kind of reason."""
-    return _OF_MANY[kind]
-
-
 def sentence(report: dict[str, Any]) -> str:
     """What became of an object in one line; Blender joins lines without a space."""
     told = "".join(f"; {text}" for text in warnings(report) + exceptions(report))
@@ -123,7 +118,7 @@ def is_grave(report: dict[str, Any]) -> bool:
 
 
 def _kept(report: dict[str, Any], *, small: bool) -> list[str]:
-    """How many parts were left as they were, or left out, and why: the small ones, or the others."""
+    """How many parts were left as they were, or left out, and why: small ones, or the others."""
     n_parts = len(report["parts"]) + len(report["kept"])
     told = []
     for outcome, left in _OUTCOMES:
@@ -149,7 +144,7 @@ def _reasons(parts: list[dict[str, Any]]) -> list[str]:
     for each in (each for part in parts for each in part["reasons"]):
         kinds.setdefault(each["kind"], []).append(each)
     return [
-        reason(alike[0]) if len(parts) == 1 else f"{len(alike):,} {reason_of_many(kind)}"
+        reason(alike[0]) if len(parts) == 1 else f"{len(alike):,} {OF_MANY[kind]}"
         for kind, alike in kinds.items()
     ]
 

@@ -73,6 +73,20 @@ def test_several_objects_are_counted_and_each_has_a_line(
     assert shown[3] == f"CHECKMARK Left: 320 → {n_left}"
 
 
+def test_where_nothing_can_be_done_all_reasons_are_told(
+    open_fixture: Open, capfd: pytest.CaptureFixture[str]
+) -> None:
+    first = open_fixture("03")
+    second = bpy.data.objects["Second"]
+    for thing in (first, second):
+        thing.data = bpy.data.meshes.new("Empty")
+    select(first, second)
+    with pytest.raises(RuntimeError, match="2 refused; see the panel"):
+        press.orbflow_remesh()
+    out = capfd.readouterr().out
+    assert all(f"Info: {name}: the mesh has no faces" in out for name in ("First", "Second"))
+
+
 def test_a_line_selects_its_object_and_goes_with_its_mesh(open_fixture: Open) -> None:
     left = open_fixture("02")
     right = bpy.data.objects["Right"]

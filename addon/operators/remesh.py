@@ -140,9 +140,9 @@ def _reports(told: list[Told]) -> list[tuple[str, str]]:
         return [("ERROR", noted[0])]
     lines = [line for each in told for line in each.lines]
     text = words.summary([line.state for line in lines])
-    if not is_done:
-        return [("ERROR", f"{text}: {'; '.join(noted)}")]
-    last = ("WARNING", f"{text}; see the panel") if noted else ("INFO", text)
+    if not noted:
+        return [("INFO", text)]
+    last = "WARNING" if is_done else "ERROR", f"{text}; see the panel"
     return [*(("INFO", each) for each in noted), last]
 
 
