@@ -53,6 +53,7 @@ pub use verbs::{Decimated, EmbedReport, EmbeddedParts, decimate, embed};
 
 use glam::DVec3;
 
+use crate::clean::Apart;
 use crate::embed::OffsetPredictor;
 use crate::mesh::{PolygonMesh, VertexId};
 use crate::nearest::Bvh;
@@ -160,16 +161,13 @@ fn run(
 ) -> Result<Remeshed, Error> {
     let mut clock = Clock::default();
     let stage = progress.part("clean", 0.0, 0.02);
-    let apart = || clean::take_apart(given.mesh, settings.weld, &stage);
-    let mut apart = clock.step("clean", apart)?;
-    let moved = apart.moved.take();
-    let moved = moved.map(|places| given.mesh.with_positions(places));
+    let apart = || taken_apart(given.mesh, settings.weld, &stage);
+    let (apart, moved) = clock.step("clean", apart)?;
     let mesh = moved.as_ref().unwrap_or(given.mesh);
     let input = Input { mesh, ..given };
     let sort = || Parts::new(&input, apart, settings, &stage);
     let (mut parts, cleaned) = clock.step("split", sort)?;
-    let marked = parts.on_done(mesh, given.marked);
-    let marked: Vec<_> = marked.into_iter().map(|i| given.marked[i]).collect();
+    let marked = parts.marked_on_done(&input);
     let input = Input {
         marked: &marked,
         ..input
@@ -194,15 +192,10 @@ fn run(
     let carrying = || elements(&input, (&prepared, plane), &mut joined, stayed, &stage);
     let (mut made, carried) = clock.step("transfer", carrying)?;
     let stage = progress.part("score", 0.92, 1.0);
-    let (score, score_refused) = match settings.score() {
-        Some(wanted) => {
-            let old = parts.done_alone(given.mesh);
-            let old = old.as_ref().unwrap_or(given.mesh);
-            let scored = clock.step("score", || score::score(old, &made.mesh, &wanted, &stage));
-            told(scored)?
-        }
-        None => (None, None),
-    };
+    let scoring = |wanted| scored((given.mesh, &parts), &made.mesh, &wanted, &stage);
+    let scored = |wanted| clock.step("score", || scoring(wanted));
+    let scored = settings.score().map(scored).transpose()?;
+    let (score, score_refused) = scored.unwrap_or_default();
     staying.append(&given, &mut made);
     let report = Report {
         version: VERSION,
@@ -221,21 +214,31 @@ fn run(
         peak_memory_mb: peak_memory_mb(),
     };
     progress.at(1.0)?;
-    Ok(Remeshed {
-        mesh: made.mesh,
-        materials: made.materials,
-        sphere: made.sphere,
-        carried: made.carried,
-        origins: made.origins,
-        crosses,
-        kept_faces: staying.n_faces(),
-        report,
-    })
+    Ok(made.told(crosses, staying.n_faces(), report))
 }
 
-/// A result that cannot be scored is a result all the same; only a cancellation ends the run.
-fn told(scored: Result<Score, score::Error>) -> Result<(Option<Score>, Option<String>), Cancelled> {
-    match scored {
+/// The parts of a mesh, and the mesh with its seams closed, where there are any.
+fn taken_apart(
+    mesh: &PolygonMesh,
+    weld: Option<f64>,
+    progress: &Progress<'_>,
+) -> Result<(Apart, Option<PolygonMesh>), clean::Error> {
+    let mut apart = clean::take_apart(mesh, weld, progress)?;
+    let moved = apart.moved.take();
+    let moved = moved.map(|places| mesh.with_positions(places));
+    Ok((apart, moved))
+}
+
+/// What was made, measured against what it was made of. A result that cannot be scored is a result
+/// all the same; only a cancellation ends the run.
+fn scored(
+    (mesh, parts): (&PolygonMesh, &Parts),
+    made: &PolygonMesh,
+    wanted: &score::Settings,
+    progress: &Progress<'_>,
+) -> Result<(Option<Score>, Option<String>), Cancelled> {
+    let done = parts.done_alone(mesh);
+    match score::score(done.as_ref().unwrap_or(mesh), made, wanted, progress) {
         Ok(score) => Ok((Some(score), None)),
         Err(score::Error::Cancelled(cancelled)) => Err(cancelled),
         Err(error) => Ok((None, Some(error.to_string()))),
