@@ -58,6 +58,7 @@ pub use warning::{Fault, Warning};
 
 use glam::DVec3;
 
+use crate::clean::Apart;
 use crate::embed::OffsetPredictor;
 use crate::mesh::{PolygonMesh, VertexId};
 use crate::nearest::Bvh;
@@ -168,16 +169,13 @@ fn run(
 ) -> Result<Remeshed, Error> {
     let mut clock = Clock::default();
     let stage = progress.part("clean", 0.0, 0.02);
-    let apart = || clean::take_apart(given.mesh, settings.weld, &stage);
-    let mut apart = clock.step("clean", apart)?;
-    let moved = apart.moved.take();
-    let moved = moved.map(|places| given.mesh.with_positions(places));
+    let apart = || taken_apart(given.mesh, settings.weld, &stage);
+    let (apart, moved) = clock.step("clean", apart)?;
     let mesh = moved.as_ref().unwrap_or(given.mesh);
     let input = Input { mesh, ..given };
     let sort = || Parts::new(&input, apart, settings, &stage);
     let (mut parts, cleaned) = clock.step("split", sort)?;
-    let marked = parts.on_done(mesh, given.marked);
-    let marked: Vec<_> = marked.into_iter().map(|i| given.marked[i]).collect();
+    let marked = parts.marked_on_done(&input);
     let input = Input {
         marked: &marked,
         ..input
@@ -205,16 +203,8 @@ fn run(
     let lost_marks = lost_marks(&prepared, (mesh, &marked), &joined, progress)?;
     let old = parts.done_alone(given.mesh);
     let against = (old.as_ref().unwrap_or(given.mesh), &prepared);
-    let scored = Scored::new(against, &made.mesh, settings, (&mut clock, &stage))?;
-    let faults = Made {
-        mesh: &made.mesh,
-        parts: &joined.parts,
-        plane,
-        diagonal: prepared.frame.grow(DVec3::X).x,
-        glance: scored.glance,
-        lost_marks,
-    };
-    let warnings = warning::warnings(&faults, settings, progress)?;
+    let told = (&joined.parts[..], plane, lost_marks);
+    let (scored, warnings) = judge(against, (&made.mesh, told), settings, (&mut clock, &stage))?;
     staying.append(&given, &mut made);
     let report = Report {
         version: VERSION,
@@ -234,21 +224,51 @@ fn run(
         peak_memory_mb: peak_memory_mb(),
     };
     progress.at(1.0)?;
-    if settings.strict && report.warnings.iter().any(|warning| warning.grave) {
-        let warnings = report.warnings.clone();
-        let report = Box::new(report);
-        return Err(Error::Unsound { warnings, report });
+    strict(&report)?;
+    Ok(made.told(crosses, staying.n_faces(), report))
+}
+
+/// How good what was made is, and what is to be said of it.
+fn judge(
+    (old, prepared): (&PolygonMesh, &Prepared),
+    (mesh, (parts, plane, lost_marks)): (&PolygonMesh, (&[PartReport], Option<Plane>, f64)),
+    settings: &Settings,
+    (clock, progress): (&mut Clock, &Progress<'_>),
+) -> Result<(Scored, Vec<Warning>), Cancelled> {
+    let scored = Scored::new((old, prepared), mesh, settings, (clock, progress))?;
+    let made = Made {
+        mesh,
+        parts,
+        plane,
+        diagonal: prepared.frame.grow(DVec3::X).x,
+        glance: scored.glance,
+        lost_marks,
+    };
+    let warnings = warning::warnings(&made, settings, progress)?;
+    Ok((scored, warnings))
+}
+
+/// A strict run ends without a mesh where a warning is grave.
+fn strict(report: &Report) -> Result<(), Error> {
+    if report.settings.strict && report.warnings.iter().any(|warning| warning.grave) {
+        return Err(Error::Unsound {
+            warnings: report.warnings.clone(),
+            report: Box::new(report.clone()),
+        });
     }
-    Ok(Remeshed {
-        mesh: made.mesh,
-        materials: made.materials,
-        sphere: made.sphere,
-        carried: made.carried,
-        origins: made.origins,
-        crosses,
-        kept_faces: staying.n_faces(),
-        report,
-    })
+    Ok(())
+}
+
+/// The parts of a mesh, and the mesh with its seams closed, where there are any.
+fn taken_apart(
+    mesh: &PolygonMesh,
+    weld: Option<f64>,
+    progress: &Progress<'_>,
+) -> Result<(Apart, Option<PolygonMesh>), clean::Error> {
+    let mut apart = clean::take_apart(mesh, weld, progress)?;
+    let moved = apart.moved.take();
+    let moved = moved.map(|places| mesh.with_positions(places));
+    Ok((apart, moved))
 }
 
 /// The share of the marked edges that no edge lies along.

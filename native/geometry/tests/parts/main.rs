@@ -139,7 +139,10 @@ fn a_ball_gets_the_faces_and_its_specks_stay_or_go() {
     stays(&result, &mesh, n_ball..mesh.n_faces());
     assert_eq!(result.report.kept.len(), 20);
     for (i, kept) in result.report.kept.iter().enumerate() {
-        assert_eq!((kept.part, kinds(kept)), (i + 1, vec!["small"]));
+        assert_eq!(
+            (kept.part, kinds(kept).join(" ")),
+            (i + 1, "small".to_owned())
+        );
         assert!(
             kept.reasons[0]
                 .text
@@ -264,10 +267,8 @@ fn a_part_whose_run_fails_stays_as_it_was() {
     let from = small.n_faces();
     stays(&result, &mesh, from..from + large.n_faces());
     let kept = &result.report.kept;
-    assert_eq!(
-        (kept.len(), kept[0].part, kinds(&kept[0])),
-        (1, 1, vec!["failed"])
-    );
+    assert_eq!((kept.len(), kept[0].part), (1, 1));
+    assert_eq!(kinds(&kept[0]), ["failed"]);
     assert!(kept[0].reasons[0].text.ends_with("vertices are too many"));
     // New faces take nothing from what stays, though it is nearest in places.
     let new = &result.materials.unwrap()[..result.mesh.n_faces() - large.n_faces()];
@@ -423,7 +424,7 @@ proptest! {
         seed: u64, n_scraps in 0..6_usize, exponent in -200..200_i32, shape in 0..3_usize,
     ) {
         let size = 2_f64.powi(exponent);
-        let solid = [ball(3), cube(3), common::blob(seed, 4)].swap_remove(shape);
+        let solid = vec![ball(3), cube(3), common::blob(seed, 4)].swap_remove(shape);
         let (mesh, scraps) = Mixed::scattered(&solid, n_scraps, size, seed);
         let wanted = Settings { kind: Kind::Triangles, ..settings(60) };
         let result = remesh(&mesh, &wanted).unwrap();
