@@ -9,7 +9,10 @@ import bpy
 
 # Keys over a 3D view that look around, or open what is not the mesh's.
 _LOOKS = ("HOME", "N", "T", "ACCENT_GRAVE")
-_LOOKS_BY_NAME = ("MIDDLEMOUSE", "MOUSEMOVE", "NDOF", "TIMER", "TRACKPAD", "WHEEL")
+_LOOKS_BY_NAME = (
+    *("INBETWEEN_MOUSEMOVE", "MIDDLEMOUSE", "MOUSEMOVE", "NDOF", "TIMER", "TRACKPAD", "WHEEL"),
+    "WINDOW_DEACTIVATE",
+)
 # Regions of a 3D view in which nothing edits a mesh. Not among them: the view itself, and the
 # panel of the last operator, which would undo it and run it again.
 _SAFE_REGIONS = {"ASSET_SHELF", "ASSET_SHELF_HEADER", "HEADER", "TOOLS", "TOOL_HEADER", "UI"}

@@ -32,7 +32,9 @@ class Stage:
     at: int
 
 
+# Hears how far a run is, and how far the core is with one of its objects.
 Listener = Callable[[Stage], None]
+CoreListener = Callable[[str, float], None]
 
 
 @dataclass(frozen=True)
@@ -97,7 +99,7 @@ def remesh(
         except orbflow_native.Cancelled:
             raise
         except orbflow_native.InputError as error:
-            outcomes.append(Failed(task.name, str(error), getattr(error, "kept", []), task))
+            outcomes.append(Failed(task.name, str(error), error.kept, task))
         except Exception as error:
             text = str(error) or type(error).__name__
             outcomes.append(Failed(task.name, text, task=task))
@@ -118,7 +120,7 @@ def _bounds(tasks: list[Todo], n_wanted: int) -> list[float]:
 def _remesh_one(
     task: Task,
     settings: dict[str, Any],
-    listener: Listener,
+    listener: CoreListener,
     cancel: orbflow_native.CancelToken,
 ) -> orbflow_native.Remeshed:
     arrays, artist = task.arrays, task.artist

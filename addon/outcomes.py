@@ -9,6 +9,7 @@ import numpy as np
 
 from . import attributes, runs, spots, words
 from .job import Done, Failed
+from .mesh_arrays import MeshArrays
 from .runs import Left, Line, Print
 from .spots import Complaint, Numbers
 
@@ -48,9 +49,7 @@ def done(outcome: Done, report: dict[str, Any], old: Before) -> Told:
     """Tells of a task that was done; `report` is what the panel keeps of it."""
     task = outcome.task
     thing = bpy.data.objects[task.name, None]
-    for name in ("kept", "warnings"):
-        report.setdefault(name, [])
-    report["clean"].setdefault("n_seam_welded", 0)
+    report.setdefault("warnings", [])
     report["n_hidden"] = old.n_hidden
     report["nodes"] = [each.name for each in thing.modifiers if _has_nodes(each)]
     if old.print:
@@ -62,8 +61,10 @@ def done(outcome: Done, report: dict[str, Any], old: Before) -> Told:
             # The mesh is a part of the result.
             numbers = spots.gone(task.arrays)
         complaints = spots.complaints(report["kept"], numbers, n_parts)
-        runs.remember_left(thing, Left("", complaints))
-    state = "warned" if words.is_warned(report) else "done"
+        is_there = any(part["outcome"] == "kept" for part in report["kept"])
+        title = f"Some parts were left {'as they were' if is_there else 'out'}"
+        runs.remember_left(thing, Left(title, False, complaints))
+    state = "warned" if words.warnings(report) else "done"
     lines = [_line(name, state, words.line(report)) for name in (task.name, *task.others)]
     return Told(lines, words.sentence(report), words.is_grave(report))
 
@@ -73,11 +74,12 @@ def refused(failed: Failed) -> Told:
     thing, task = runs.local(failed.name), failed.task
     complaints: list[Complaint] = []
     if task:
-        numbers = _numbers(thing, failed)
+        numbers = _numbers(thing, task.arrays)
         complaints = spots.complaints(failed.kept, numbers, len(failed.kept))
     said = "; ".join(each.words for each in complaints)
     if thing and _is_only_one(failed.name):
-        runs.remember_left(thing, Left(said or failed.error, complaints))
+        told = complaints or [Complaint(failed.error, failed.error, None)]
+        runs.remember_left(thing, Left("{} was left as it was", True, told))
     text = f"{said} \nIn exact words: {failed.error}" if said else failed.error
     names = (failed.name, *(task.others if task else ()))
     return Told([_line(name, "refused", said or failed.error) for name in names], text, True)
@@ -88,9 +90,8 @@ def _line(name: str, state: str, text: str) -> Line:
     return Line(name, state, text, thing and runs.print_of(thing.data))
 
 
-def _numbers(thing: bpy.types.Object | None, failed: Failed) -> Numbers:
+def _numbers(thing: bpy.types.Object | None, arrays: MeshArrays) -> Numbers:
     """What the core calls by number is of the object's mesh, unless modifiers made another."""
-    arrays = failed.task.arrays
     counts = len(arrays.positions), len(arrays.loop_start)
     if thing and counts == (len(thing.data.vertices), len(thing.data.polygons)):
         return spots.same(arrays)

@@ -166,10 +166,8 @@ def _draw_left(
     column: bpy.types.UILayout, name: str, left: Left, context: bpy.types.Context
 ) -> None:
     """Why an object, or parts of it, were left as they were, each with the button Show."""
-    title = f"{name} was left as it was" if left.error else "Parts were left as they were"
-    _draw_text(column, title, "CANCEL" if left.error else "ERROR", _n_letters(context))
-    if left.error and not left.complaints:
-        _draw_text(column, left.error, "BLANK1", _n_letters(context))
+    icon = "CANCEL" if left.is_whole else "ERROR"
+    _draw_text(column, left.title.format(name), icon, _n_letters(context))
     for i, complaint in enumerate(left.complaints):
         share = _BESIDE if complaint.spot else 1.0
         row = column.split(factor=share)

@@ -5,7 +5,7 @@ A mesh is known by its print. So undo and redo, another name for an object and a
 what belongs to them, and what is told of a mesh goes when the mesh changes.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import bpy
@@ -37,9 +37,11 @@ class Last:
 class Left:
     """What a run has left of a mesh as it was, and why."""
 
-    #: Why the object was left as it is; empty where only parts of it were.
-    error: str
-    complaints: list[Complaint] = field(default_factory=list)
+    #: What was left; `{}` stands for the object's name.
+    title: str
+    #: Whether the whole object was.
+    is_whole: bool
+    complaints: list[Complaint]
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,6 @@
 """What the user can set; the operator and the panel share one list of properties."""
 
 # pyright: reportInvalidTypeForm=false
-import inspect
 import math
 from typing import Any
 
@@ -148,7 +147,7 @@ class Settings:
     )
     mirror_modifier: EnumProperty(
         name="Mirror Modifier",
-        description="What becomes of a mesh that a Mirror modifier makes whole",
+        description="What becomes of a half that a Mirror modifier makes whole",
         items=_MIRROR_MODIFIERS,
         default="WHOLE",
     )
@@ -240,7 +239,7 @@ def for_core(source: Settings) -> dict[str, Any]:
     """The settings as keywords of `orbflow_native.remesh`, but for those that say what is read."""
     names = [name for name in NAMES if name not in _OF_MESH | _IN_OTHERS]
     values = {name: _value(getattr(source, name)) for name in names}
-    given = values | {
+    return values | {
         "sharp_angle": math.degrees(source.sharp_angle),
         # Blender keeps fewer digits; those beyond are not what was asked for.
         "weld": float(f"{source.weld / 100:.6g}") if source.use_weld else None,
@@ -249,8 +248,6 @@ def for_core(source: Settings) -> dict[str, Any]:
         "weights": preferences.weights() if source.predictor != "SOLVER" else None,
         "n_crosses": N_CROSSES,
     }
-    known = inspect.signature(orbflow_native.remesh).parameters
-    return {name: value for name, value in given.items() if name in known}
 
 
 def is_of_use(source: Settings, name: str) -> bool:

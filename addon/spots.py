@@ -76,7 +76,7 @@ def in_result(arrays: MeshArrays, result: orbflow_native.Remeshed) -> Numbers:
     n_faces = len(result.loop_start)
     kept = np.arange(n_faces - n_kept, n_faces, dtype=np.int32)
     numbers.faces[origins.faces[kept]] = kept
-    corners = np.arange(result.loop_start[kept[0]], len(result.corner_vert))
+    corners = np.arange(int(result.loop_start[kept[0]]), len(result.corner_vert))
     old = arrays.corner_vert[origins.corner_corners[0][corners, 0]]
     numbers.vertices[old] = result.corner_vert[corners]
     return numbers
@@ -95,7 +95,7 @@ def complaints(kept: list[dict[str, Any]], numbers: Numbers, n_parts: int) -> li
 def _complaint(group: list[_Reason], numbers: Numbers, n_parts: int) -> Complaint:
     (part, reason), *others = group
     if others:
-        told = words.reason_of_many(reason["kind"], len(group))
+        told = f"{len(group):,} parts {words.OF_MANY[reason['kind']]}"
     elif n_parts > 1:
         told = f"part of {words.count(part['n_faces'], 'face')}: {words.reason(reason)}"
     else:

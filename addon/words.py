@@ -22,15 +22,15 @@ _CLEANED = (
     ("n_duplicates", ("face that is there twice", "faces that are there twice")),
     ("n_doubled", ("triangle back to back with another", "triangles back to back with others")),
 )
-# Why many parts are left, by the kind of reason.
-_OF_MANY = {
-    "border": "{} parts have holes (open edges)",
-    "handles": "{} parts have a hole through them like a ring or cup handle",
-    "shared-edges": "3 or more faces meet at edges of {} parts",
-    "one-sided": "inside and outside cannot be told apart (like a Moebius strip) in {} parts",
-    "flat": "{} parts are flat",
-    "small": "{} parts are too small for this face count",
-    "failed": "{} parts could not be done",
+#: What parts are that were left, by the kind of reason.
+OF_MANY = {
+    "border": "with holes (open edges)",
+    "handles": "with a hole through it like a ring or cup handle",
+    "shared-edges": "with edges at which 3 or more faces meet",
+    "one-sided": "whose inside and outside cannot be told apart (like a Moebius strip)",
+    "flat": "flat",
+    "small": "too small for this face count",
+    "failed": "that could not be done",
 }
 # Why one part is left, where that has no numbers.
 _OF_ONE = {
@@ -83,11 +83,6 @@ def reason(reason: dict[str, Any]) -> str:
     return f"could not be done: {reason['text']}"
 
 
-def reason_of_many(kind: str, n_parts: int) -> str:
-    """Why several parts were left, for one kind of reason."""
-    return _OF_MANY[kind].format(f"{n_parts:,}")
-
-
 def sentence(report: dict[str, Any]) -> str:
     """What became of an object in one line; Blender joins lines without a space."""
     told = "".join(f"; {text}" for text in warnings(report) + exceptions(report))
@@ -113,36 +108,45 @@ def summary(states: list[str]) -> str:
 
 
 def warnings(report: dict[str, Any]) -> list[str]:
-    """What may be wrong with a result, and what of the mesh was left as it was."""
-    return [each["text"] for each in report["warnings"]] + kept(report)
+    """What may be wrong with a result, and which parts of the mesh could not be done."""
+    return [each["text"] for each in report["warnings"]] + _kept(report, small=False)
 
 
 def is_grave(report: dict[str, Any]) -> bool:
-    """Whether a result may be wrong, or a part was left that is not merely small."""
-    return any(each["grave"] for each in report["warnings"]) or any(map(_is_left, report["kept"]))
+    """Whether a result may be wrong, or a part could not be done."""
+    return any(each["grave"] for each in report["warnings"]) or bool(_kept(report, small=False))
 
 
-def is_warned(report: dict[str, Any]) -> bool:
-    """Whether there is a warning, or a part was left that is not merely small."""
-    return bool(report["warnings"]) or is_grave(report)
-
-
-def kept(report: dict[str, Any]) -> list[str]:
-    """How many parts were left as they were, or left out, and why."""
+def _kept(report: dict[str, Any], *, small: bool) -> list[str]:
+    """How many parts were left as they were, or left out, and why: small ones, or the others."""
     n_parts = len(report["parts"]) + len(report["kept"])
     told = []
     for outcome, left in _OUTCOMES:
-        parts = [part for part in report["kept"] if part["outcome"] == outcome]
-        kinds: dict[str, list[dict[str, Any]]] = {}
-        for each in (each for part in parts for each in part["reasons"]):
-            kinds.setdefault(each["kind"], []).append(each)
-        why = [
-            reason(alike[0]) if len(alike) == 1 else reason_of_many(kind, len(alike))
-            for kind, alike in kinds.items()
+        parts = [
+            part
+            for part in report["kept"]
+            if part["outcome"] == outcome and is_small(part) == small
         ]
         if parts:
-            told.append(f"{len(parts):,} of {n_parts:,} parts {left}: {', '.join(why)}")
+            why = ", ".join(_reasons(parts))
+            told.append(f"{len(parts):,} of {n_parts:,} parts {left}: {why}")
     return told
+
+
+def is_small(part: dict[str, Any]) -> bool:
+    """Whether a part was left because it is small, whatever else it is."""
+    return any(each["kind"] == "small" for each in part["reasons"])
+
+
+def _reasons(parts: list[dict[str, Any]]) -> list[str]:
+    """Why parts were left, each kind of reason once."""
+    kinds: dict[str, list[dict[str, Any]]] = {}
+    for each in (each for part in parts for each in part["reasons"]):
+        kinds.setdefault(each["kind"], []).append(each)
+    return [
+        reason(alike[0]) if len(parts) == 1 else f"{len(alike):,} {OF_MANY[kind]}"
+        for kind, alike in kinds.items()
+    ]
 
 
 def exceptions(report: dict[str, Any]) -> list[str]:
@@ -150,6 +154,7 @@ def exceptions(report: dict[str, Any]) -> list[str]:
     lost = ", ".join(sorted(set(report["lost"])))
     told = [_without_flow(report), _without_mirror(report), _without_marks(report)]
     told += [_without_network(report), f"not carried over: {lost}" if lost else ""]
+    told += _kept(report, small=True)
     told += [_cleaned(report), _welded(report), _shown(report), *_modifiers(report)]
     return [each for each in told if each]
 
@@ -182,15 +187,14 @@ def _modifiers(report: dict[str, Any]) -> list[str]:
     return [each for each in told if each]
 
 
-def _is_left(part: dict[str, Any]) -> bool:
-    return any(each["kind"] != "small" for each in part["reasons"])
-
-
 def _without_marks(report: dict[str, Any]) -> str:
     """Which share of what was left on edges is on no edge of the result."""
     gone = 100 - report["carried"]["length_pct"] if report["carried"] else 0
+    marks = "marks of edges"
+    if "custom normals" in report["lost"]:
+        marks += " and breaks of custom normals"
     # Chords are shorter than what they stand for.
-    return f"{gone:.0f} % of the marks of edges are gone: no edge lies there" if gone > 5 else ""
+    return f"{gone:.0f} % of the {marks} are gone: no edge lies there" if gone > 5 else ""
 
 
 def _without_flow(report: dict[str, Any]) -> str:

@@ -68,6 +68,12 @@ def test_panel_and_operator_have_the_same_settings(operator: Any, scene_settings
         "sharp_angle",
         "marked_edges",
         "mirror",
+        "use_modifiers",
+        "mirror_modifier",
+        "small_parts",
+        "small_size",
+        "use_weld",
+        "weld",
         "predictor",
         "threads",
         "seed",
@@ -77,13 +83,16 @@ def test_panel_and_operator_have_the_same_settings(operator: Any, scene_settings
 
 def test_the_add_on_has_the_defaults_and_ranges_of_the_core(operator: Any) -> None:  # noqa: ANN401
     given = defaults(_core.remesh)
-    for name in ("faces", "follow_shape", "adaptivity", "threads", "seed"):
+    for name in ("faces", "follow_shape", "adaptivity", "small_size", "threads", "seed"):
         assert operator[name].default == given[name], name
     assert math.degrees(operator["sharp_angle"].default) == pytest.approx(given["sharp_angle"])
+    assert operator["weld"].default / 100 == pytest.approx(given["weld"])
+    assert operator["use_weld"].default
     assert operator["faces"].hard_min == orbflow_native.MIN_FACES
     assert operator["faces"].hard_max == orbflow_native.MAX_FACES
     assert operator["kind"].default.lower() == given["kind"]
     assert operator["mirror"].default.lower() == given["mirror"]
+    assert operator["small_parts"].default.lower() == given["small_parts"]
     assert operator["predictor"].default.lower() == given["predictor"]
     assert (operator["primitive"].default, given["primitive"]) == ("AUTO", None)
 
@@ -102,7 +111,19 @@ def test_the_add_on_offers_the_mirrors_of_the_core(operator: Any) -> None:  # no
     assert offered == core_words("mirror") - {"?"}
 
 
-@pytest.mark.parametrize("name", ["kind", "primitive", "predictor"])
+@pytest.mark.parametrize(("name", "unit"), [("small_size", 1.0), ("weld", 100.0)])
+def test_the_core_takes_the_largest_that_the_add_on_offers(
+    operator: Any,  # noqa: ANN401
+    name: str,
+    unit: float,
+) -> None:
+    most = operator[name].hard_max / unit
+    orbflow_native.remesh(*ball(), faces=24, score_samples=0, **{name: most * (1 - 1e-6)})
+    with pytest.raises(orbflow_native.InputError):
+        orbflow_native.remesh(*ball(), faces=24, score_samples=0, **{name: most * 1.01})
+
+
+@pytest.mark.parametrize("name", ["kind", "primitive", "predictor", "small_parts"])
 def test_the_add_on_offers_what_the_core_takes(operator: Any, name: str) -> None:  # noqa: ANN401
     offered = {item.identifier.lower().replace("_", "-") for item in operator[name].enum_items}
     # Kind and primitive have no word for it: nothing stands for it there.

@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 import orbflow_native
 import pytest
+from conftest import FIXTURES
 from sidebar import panel_of
 from test_operator import Open, addon, press, select
 
@@ -126,9 +127,9 @@ def test_every_part_has_a_row_until_these_are_many(
     shown = [text for text, _ in panel_of(thing, width=1000).drawn if "hole" in text]
     assert shown == ["DOT part of 120 faces: has 1 hole (open edges)"] * 2
     told = refuse(hole, reason("flat", "no volume", thing), n_parts=1200)
-    assert f"{thing.name}: 1,200 parts have holes (open edges); 1,200 parts are flat" in told
+    assert f"{thing.name}: 1,200 parts with holes (open edges); 1,200 parts flat" in told
     shown = [text for text, _ in panel_of(thing, width=1000).drawn if " parts" in text]
-    assert shown == ["DOT 1,200 parts have holes (open edges)", "DOT 1,200 parts are flat"]
+    assert shown == ["DOT 1,200 parts with holes (open edges)", "DOT 1,200 parts flat"]
 
 
 def test_show_selects_edges_and_reveals_them_and_their_faces_alone(
@@ -242,3 +243,48 @@ def test_the_parts_that_stay_are_found_in_the_result(open_fixture: Open) -> None
     spot = found.of(reason("border", "1 loop", parts, edges=[edge], faces=[52, 50, 3]))
     assert spot.faces.tolist() == [12, 10]
     assert spot.edges.tolist() == [[14, 12]]
+
+
+@pytest.mark.parametrize(
+    ("prefix", "told", "n_faces_at"),
+    [
+        ("05", "has 1 hole (open edges)", {1}),
+        ("06", "has a hole through it like a ring or cup handle", {2}),
+        ("10", "3 or more faces meet at 1 edge", {3}),
+    ],
+)
+def test_the_core_names_the_spot_that_show_selects(
+    open_fixture: Open, prefix: str, told: str, n_faces_at: set[int]
+) -> None:
+    thing = open_fixture(prefix)
+    with pytest.raises(RuntimeError, match="In exact words: "):
+        press.orbflow_remesh()
+    assert " ".join(text.split(" ", 1)[1] for text in rows(thing)).startswith(
+        f"{thing.name} was left as it was {told}"
+    )
+    assert press.orbflow_show(name=thing.name, row=0) == {"FINISHED"}
+    shape = bmesh.from_edit_mesh(thing.data)
+    chosen = [edge for edge in shape.edges if edge.select]
+    assert {len(edge.link_faces) for edge in chosen} == n_faces_at
+    if n_faces_at != {2}:
+        assert len(chosen) == sum(len(edge.link_faces) in n_faces_at for edge in shape.edges)
+
+
+def test_a_part_that_stays_is_shown_where_it_lies_in_the_result(open_fixture: Open) -> None:
+    half = open_fixture("05")
+    with bpy.data.libraries.load(str(FIXTURES / "03_shared_data.blend")) as (_, wanted):
+        wanted.objects = ["First"]
+    (ball,) = wanted.objects
+    bpy.context.scene.collection.objects.link(ball)
+    ball.location.x = 5
+    select(half, ball)
+    bpy.ops.object.join()
+    n_stay = len(border(half))
+    assert press.orbflow_remesh(faces=200) == {"FINISHED"}
+    shown = [text for text, _ in panel_of(half, width=1000).drawn if "hole" in text]
+    assert shown[0] == "DOT part of 640 faces: has 1 hole (open edges)"
+    assert press.orbflow_show(name=half.name, row=0) == {"FINISHED"}
+    edges, _, _ = selected(half)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert edges == {tuple(sorted(pair)) for pair in border(half)}
+    assert len(edges) == n_stay

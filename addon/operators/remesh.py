@@ -111,7 +111,8 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
     def _finish(self, ended: list[Outcome]) -> set[str]:
         """Writes the results; the one place where errors become reports."""
         told = [_write(each) for each in ended]
-        runs.remember_lines([line for each in told for line in each.lines] * (len(told) > 1))
+        lines = [line for each in told for line in each.lines]
+        runs.remember_lines(lines if len(told) > 1 else [])
         is_done = any(each.state != "refused" for each in told)
         for level, text in _reports(told):
             self.report({level}, text)
@@ -139,9 +140,9 @@ def _reports(told: list[Told]) -> list[tuple[str, str]]:
         return [("ERROR", noted[0])]
     lines = [line for each in told for line in each.lines]
     text = words.summary([line.state for line in lines])
-    if not is_done:
-        return [("ERROR", f"{text}: {'; '.join(noted)}")]
-    last = ("WARNING", f"{text}; see the panel") if noted else ("INFO", text)
+    if not noted:
+        return [("INFO", text)]
+    last = "WARNING" if is_done else "ERROR", f"{text}; see the panel"
     return [*(("INFO", each) for each in noted), last]
 
 
@@ -201,7 +202,7 @@ def _task(things: list[bpy.types.Object], seen: modifiers.Seen, wanted: settings
     thing, *others = things
     arrays = mesh_arrays.read(seen.thing.data, wanted.marked_edges)
     scale = tuple(thing.matrix_world.to_scale())
-    given = artist.read([seen.thing, *others])
+    given = artist.read([seen.thing] + [each for each in things if each != seen.thing])
     given = replace(given, keys=seen.keys, lost=given.lost + seen.lost)
     try:
         wish = density.read(seen.thing, wanted.density, given.groups)

@@ -41,10 +41,12 @@ class OrbflowError(Exception):
 class InputError(OrbflowError):
     """This input or this setting cannot be done; the text says why, with numbers.
 
-    `kept` lists the parts that cannot be done, as a report does.
+    `kept` lists the parts that cannot be done and `warnings` what is wrong with a result that a
+    strict run refuses, as a report does.
     """
 
     kept: list[dict[str, Any]]
+    warnings: list[dict[str, Any]]
 
 class Cancelled(OrbflowError):
     """The job was stopped by its cancel token; nothing was changed."""
@@ -250,4 +252,7 @@ def score(
     progress: _Listener | None = None,
     cancel: CancelToken | None = None,
 ) -> dict[str, Any]:
-    """Says in numbers how good `output` is as a new mesh of `input`."""
+    """Says in numbers how good `output` is as a new mesh of `input`.
+
+    Whether the topology is the same is told of the input once it is cleaned as `remesh` does it.
+    """
