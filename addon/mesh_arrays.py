@@ -15,6 +15,7 @@ import orbflow_native
 from numpy.typing import NDArray
 
 from . import attributes
+from .artist import cuts
 
 Int = NDArray[np.int32]
 Float = NDArray[np.float32]
@@ -31,8 +32,9 @@ class MeshArrays:
     marked_edges: Int | None = None
 
 
-# The attributes of edges that hold the marks, and their types.
+# The attributes of edges that hold the marks, and their types; those of islands are found.
 _MARKS = {
+    "UV": [],
     "SHARP": [("sharp_edge", "BOOLEAN")],
     "CREASE": [("crease_edge", "FLOAT")],
     "SEAM": [(name, "BOOLEAN") for name in attributes.SEAMS],
@@ -69,14 +71,16 @@ def read(mesh: bpy.types.Mesh, marks: Iterable[str] = ()) -> MeshArrays:
 
 
 def _marked(mesh: bpy.types.Mesh, marks: Iterable[str]) -> Int | None:
+    marks = set(marks)
     found = np.zeros(len(mesh.edges), bool)
     for name, kind in (each for mark in marks for each in _MARKS[mark]):
         values = attributes.values(mesh, name, "EDGE", kind)
         if values is not None:
             found |= values > 0
-    if not found.any():
-        return None
-    return attributes.edge_verts(mesh)[found]
+    ends = attributes.edge_verts(mesh)[found]
+    if "UV" in marks:
+        ends = np.concatenate([ends, cuts.of_islands(mesh)])
+    return ends if len(ends) else None
 
 
 def write(arrays: MeshArrays | orbflow_native.Remeshed, like: bpy.types.Mesh) -> bpy.types.Mesh:

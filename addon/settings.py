@@ -29,6 +29,7 @@ _MARKS = (
     ("SHARP", "Sharp", "Edges marked as sharp"),
     ("CREASE", "Crease", "Edges with a subdivision crease"),
     ("SEAM", "Seam", "Edges marked as seams of the UV map"),
+    ("UV", "UV Islands", "Borders of islands of the active UV map, marked as seams or not"),
 )
 _SMALL_PARTS = (
     ("KEEP", "Keep", "They stay as they were"),

@@ -190,8 +190,11 @@ def _modifiers(report: dict[str, Any]) -> list[str]:
 def _without_marks(report: dict[str, Any]) -> str:
     """Which share of what was left on edges is on no edge of the result."""
     gone = 100 - report["carried"]["length_pct"] if report["carried"] else 0
+    marks = "marks of edges"
+    if "custom normals" in report["lost"]:
+        marks += " and breaks of custom normals"
     # Chords are shorter than what they stand for.
-    return f"{gone:.0f} % of the marks of edges are gone: no edge lies there" if gone > 5 else ""
+    return f"{gone:.0f} % of the {marks} are gone: no edge lies there" if gone > 5 else ""
 
 
 def _without_flow(report: dict[str, Any]) -> str:

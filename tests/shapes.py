@@ -46,3 +46,26 @@ def _ball_triangles(rows: int, columns: int) -> NDArray[np.int32]:
         triangles.append(np.stack([a + here, b + there, a + there], -1))
     triangles.append(np.stack([np.full(columns, bottom), last + there, last + here], -1))
     return np.concatenate(triangles).astype(np.int32)
+
+
+def split_along(mesh: Any, name: str) -> None:  # noqa: ANN401
+    """Splits the vertices of a Blender mesh where values of its corners differ, as importers do."""
+    corners = np.array([corner.vertex_index for corner in mesh.loops])
+    values = np.array([tuple(each.vector) for each in mesh.attributes[name].data])
+    keys = np.column_stack([corners, np.round(values * 1e5)])
+    _, first, which = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    old = corners[first]
+    starts = [face.loop_start for face in mesh.polygons]
+    smooth = [face.use_smooth for face in mesh.polygons]
+    points = np.array([vertex.co for vertex in mesh.vertices])[old]
+    mesh.clear_geometry()
+    mesh.vertices.add(len(points))
+    mesh.loops.add(len(corners))
+    mesh.polygons.add(len(starts))
+    mesh.vertices.foreach_set("co", points.ravel())
+    mesh.polygons.foreach_set("loop_start", starts)
+    mesh.polygons.foreach_set("use_smooth", smooth)
+    mesh.loops.foreach_set("vertex_index", which.ravel().astype(np.int32))
+    mesh.update(calc_edges=True)
+    layer = mesh.attributes.get(name) or mesh.attributes.new(name, "FLOAT2", "CORNER")
+    layer.data.foreach_set("vector", values.astype(np.float32).ravel())

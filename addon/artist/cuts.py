@@ -13,10 +13,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import attributes
+from .layers import Layer
 
 Int = NDArray[np.int32]
 Index = NDArray[np.intp]
 
+# Texture coordinates of one place that differ by more are on two sides of a seam.
+_APART = 1e-5
+# Other numbers are cut where they jump by more than this share of their range: below, the grain of
+# paint and of baked light would cut everywhere; above, a border that is seen would be smeared.
+_VISIBLE = 1 / 32
+# Normals of one place that differ by more make a crease: below, those of files that keep a byte for
+# a number do; above, creases of 2 degrees are missed.
+_CREASE = 1 / 32
 # Borders no farther from each other than this share of the diagonal are welded by the core.
 _WELD = 1e-5
 
@@ -25,7 +34,9 @@ _WELD = 1e-5
 class Seams:
     """The sides of faces, those of one welded edge together."""
 
-    #: The two corners of every side, (S, 2), in the same order of places for all sides of an edge.
+    #: The corner at which every side begins, (S,).
+    sides: Index
+    #: Its two corners, (S, 2), in the same order of places for all sides of an edge.
     ends: Index
     #: Where in `ends` the sides of every edge begin, (E,).
     starts: Index
@@ -36,8 +47,7 @@ class Seams:
 
     def jumps(self, values: NDArray, least: float = 0.0) -> NDArray[np.bool_]:
         """At which edges a value of corners differs by more than `least` between faces, (E,)."""
-        counts = np.diff(np.append(self.starts, len(self.ends)))
-        first = np.repeat(self.starts, counts)
+        first = self.starts[self._edge_of_sides()]
         found = np.zeros(len(self.ends), bool)
         for end in self.ends.T:
             one, other = values[end], values[end[first]]
@@ -48,6 +58,10 @@ class Seams:
                 differs = one != other
             found |= differs.any(axis=1)
         return np.logical_or.reduceat(found, self.starts) if len(found) else found
+
+    def on_corners(self, which: NDArray[np.bool_]) -> Index:
+        """The corners at which the sides of some edges begin."""
+        return self.sides[which[self._edge_of_sides()]]
 
     def pairs(self, which: NDArray[np.bool_]) -> Int:
         """The ends of some edges, (N, 2), by all vertices that the core may take for them."""
@@ -60,6 +74,10 @@ class Seams:
         ]
         pairs = np.concatenate([pairs, np.array(more, np.int32).reshape(-1, 2)])
         return np.ascontiguousarray(pairs, np.int32)
+
+    def _edge_of_sides(self) -> Index:
+        counts = np.diff(np.append(self.starts, len(self.sides)))
+        return np.repeat(np.arange(len(self.starts)), counts)
 
 
 def read(mesh: bpy.types.Mesh) -> Seams:
@@ -75,7 +93,63 @@ def read(mesh: bpy.types.Mesh) -> Seams:
     # Sides of one edge may run either way.
     ends = np.where(names[:, :1] > names[:, 1:], ends[:, ::-1], ends)
     order, firsts = _grouped(names)
-    return Seams(ends[order], firsts, corner_vert, twins)
+    return Seams(order, ends[order], firsts, corner_vert, twins)
+
+
+def of_layers(mesh: bpy.types.Mesh, layers: list[Layer]) -> tuple[list[Int], list[int]]:
+    """The sets of edges along which values of corners are cut, and which one is each layer's.
+
+    There is always a set.
+    """
+    if not layers:
+        return [np.empty((0, 2), np.int32)], []
+    seams = read(mesh)
+    sets: dict[bytes, tuple[int, Int]] = {}
+    which = []
+    for layer in layers:
+        is_cut = seams.jumps(layer.values, _least_jump(layer))
+        number, _ = sets.setdefault(is_cut.tobytes(), (len(sets), seams.pairs(is_cut)))
+        which.append(number)
+    return [edges for _, edges in sets.values()], which
+
+
+def of_islands(mesh: bpy.types.Mesh) -> Int:
+    """The borders of the islands of the active UV map, (N, 2)."""
+    active = mesh.uv_layers.active
+    if active is None or not len(mesh.loops):
+        return np.empty((0, 2), np.int32)
+    coordinates = np.empty((len(mesh.loops), 2), np.float32)
+    mesh.attributes[active.name].data.foreach_get("vector", coordinates.ravel())
+    seams = read(mesh)
+    return seams.pairs(seams.jumps(coordinates, _APART))
+
+
+def creases(mesh: bpy.types.Mesh) -> NDArray[np.bool_]:
+    """At which edges of smooth faces the artist's normals break, (E,)."""
+    found = np.zeros(len(mesh.edges), bool)
+    if not mesh.has_custom_normals:
+        return found
+    normals = np.empty((len(mesh.loops), 3), np.float32)
+    mesh.corner_normals.foreach_get("vector", normals.ravel())
+    seams = read(mesh)
+    corners = seams.on_corners(seams.jumps(normals, _CREASE))
+    is_flat = attributes.values(mesh, "sharp_face", "FACE", "BOOLEAN")
+    if is_flat is not None:
+        # These have normals of their own without a crease.
+        of_corners = np.searchsorted(attributes.loop_starts(mesh), corners, "right") - 1
+        corners = corners[~is_flat[of_corners]]
+    found[attributes.corner_edges(mesh)[corners]] = True
+    return found
+
+
+def _least_jump(layer: Layer) -> float:
+    """By how much values on two sides of a cut differ at least."""
+    if layer.kind == "FLOAT2":
+        return _APART
+    if layer.values.dtype != np.float32:
+        return 0.0
+    known = layer.values[np.isfinite(layer.values)]
+    return _VISIBLE * float(np.ptp(known)) if len(known) else 0.0
 
 
 def _grouped(names: Index) -> tuple[Index, Index]:

@@ -9,7 +9,7 @@ import orbflow_native
 from numpy.typing import NDArray
 
 from ..attributes import corner_edges, edge_verts
-from . import layers
+from . import cuts, layers
 from .layers import Layer
 
 Int = NDArray[np.int32]
@@ -25,7 +25,7 @@ class Edges:
 
 def read(mesh: bpy.types.Mesh) -> Edges | None:
     """Reads what is left on edges; none where nothing is."""
-    found = list(layers.read(mesh, "EDGE"))
+    found = _with_creases(mesh, list(layers.read(mesh, "EDGE")))
     is_left = np.zeros(len(mesh.edges), bool)
     for layer in found:
         is_left |= layer.values.any(axis=1)
@@ -48,6 +48,21 @@ def write(mesh: bpy.types.Mesh, edges: Edges, result: orbflow_native.Remeshed) -
 def n_loose(mesh: bpy.types.Mesh) -> int:
     """How many edges of a mesh belong to no face."""
     return len(mesh.edges) - len(np.unique(corner_edges(mesh)))
+
+
+def _with_creases(mesh: bpy.types.Mesh, found: list[Layer]) -> list[Layer]:
+    """The layers of edges, with those sharp at which the artist's normals break.
+
+    The normals themselves do not come over.
+    """
+    sharp = cuts.creases(mesh)[:, None]
+    if not sharp.any():
+        return found
+    for layer in found:
+        if layer.name == "sharp_edge":
+            sharp = sharp | layer.values
+    others = [layer for layer in found if layer.name != "sharp_edge"]
+    return [*others, Layer("sharp_edge", "BOOLEAN", sharp)]
 
 
 def _find(mesh: bpy.types.Mesh, ends: Int) -> NDArray[np.intp]:

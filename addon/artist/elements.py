@@ -15,11 +15,6 @@ from .layers import Layer, Mix
 Int = NDArray[np.int32]
 
 _DOMAINS = ("POINT", "CORNER", "FACE")
-# Texture coordinates of one place that differ by more are on two sides of a seam.
-_APART = 1e-5
-# Other numbers are cut where they jump by more than this share of their range: below, the grain of
-# paint and of baked light would cut everywhere; above, a border that is seen would be smeared.
-_VISIBLE = 1 / 32
 
 
 @dataclass(frozen=True)
@@ -41,7 +36,7 @@ def read(mesh: bpy.types.Mesh) -> Elements:
     """Reads the attributes of a mesh."""
     found = {domain: list(layers.read(mesh, domain)) for domain in _DOMAINS}
     corners = attributes.corner_verts(mesh)
-    return Elements(found, corners, *_cuts(mesh, found["CORNER"]), _active(mesh))
+    return Elements(found, corners, *cuts.of_layers(mesh, found["CORNER"]), _active(mesh))
 
 
 def write(mesh: bpy.types.Mesh, given: Elements, result: orbflow_native.Remeshed) -> Mix | None:
@@ -63,33 +58,6 @@ def write(mesh: bpy.types.Mesh, given: Elements, result: orbflow_native.Remeshed
     for place, name in given.active.items():
         _activate(mesh, place, name)
     return of_vertices
-
-
-def _cuts(mesh: bpy.types.Mesh, layers: list[Layer]) -> tuple[list[Int], list[int]]:
-    """The sets of edges along which values of corners are cut, and which one is each layer's.
-
-    There is always a set.
-    """
-    if not layers:
-        return [np.empty((0, 2), np.int32)], []
-    seams = cuts.read(mesh)
-    sets: dict[bytes, tuple[int, Int]] = {}
-    which = []
-    for layer in layers:
-        is_cut = seams.jumps(layer.values, _least_jump(layer))
-        number, _ = sets.setdefault(is_cut.tobytes(), (len(sets), seams.pairs(is_cut)))
-        which.append(number)
-    return [edges for _, edges in sets.values()], which
-
-
-def _least_jump(layer: Layer) -> float:
-    """By how much values on two sides of a cut differ at least."""
-    if layer.kind == "FLOAT2":
-        return _APART
-    if layer.values.dtype != np.float32:
-        return 0.0
-    known = layer.values[np.isfinite(layer.values)]
-    return _VISIBLE * float(np.ptp(known)) if len(known) else 0.0
 
 
 def _active(mesh: bpy.types.Mesh) -> dict[str, str]:

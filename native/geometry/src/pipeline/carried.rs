@@ -1,10 +1,13 @@
 //! Edges of the input, found again on edges of the result.
 
+use std::collections::HashSet;
+
 use glam::DVec3;
 use serde::Serialize;
 
 use super::frame::Frame;
 use super::join::Joined;
+use super::marks;
 use super::mirror::Plane;
 use super::{CarriedEdge, Input};
 use crate::mirror::mirrored;
@@ -66,15 +69,25 @@ pub fn carried(
         old = both;
     }
     let mut edges = transfer::edges(&old, &joined.mesh, &joined.features, progress)?;
-    let length = |[a, b]: [DVec3; 2]| a.distance(b);
     let new = edges
         .iter()
         .map(|c| c.ends.map(|v| joined.mesh.position(v)));
-    let lengths = [new.map(length).sum(), old.iter().copied().map(length).sum()];
+    let lengths = [new.map(length).sum(), length_of_places(&old)];
     for carried in &mut edges {
         carried.from = names[carried.from];
     }
     Ok(Found { edges, lengths })
+}
+
+fn length([a, b]: [DVec3; 2]) -> f64 {
+    a.distance(b)
+}
+
+/// The length of edges; where a seam is split, two lie at one place, which counts once.
+fn length_of_places(edges: &[[DVec3; 2]]) -> f64 {
+    let mut seen = HashSet::new();
+    let is_new = |&&[a, b]: &&[DVec3; 2]| seen.insert(marks::key(a, b));
+    edges.iter().filter(is_new).copied().map(length).sum()
 }
 
 /// The edges of the positive side and their images, and which of the edges each comes from.
@@ -86,4 +99,17 @@ fn symmetric(old: &[[DVec3; 2]], axis: usize) -> (Vec<usize>, Vec<[DVec3; 2]>) {
         [(name, ends), (name, image)]
     });
     both.unzip()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_two_edges_of_a_split_seam_count_once() {
+        let seam = [DVec3::ZERO, DVec3::new(3.0, 4.0, -0.0)];
+        let other = [DVec3::Z, DVec3::X];
+        let turned = [DVec3::new(3.0, 4.0, 0.0), DVec3::ZERO];
+        assert_eq!(length_of_places(&[seam, other, turned]), 5.0 + 2f64.sqrt());
+    }
 }

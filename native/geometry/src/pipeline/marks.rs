@@ -61,7 +61,7 @@ impl Input<'_> {
 }
 
 /// Two ends as bits, in an order that does not depend on theirs.
-fn key(a: DVec3, b: DVec3) -> [[u64; 3]; 2] {
+pub(super) fn key(a: DVec3, b: DVec3) -> [[u64; 3]; 2] {
     let [a, b] = [a, b].map(bits);
     [a.min(b), a.max(b)]
 }
