@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The half of a symmetric result: a Mirror modifier that stays in the stack makes it whole again."""
+"""The half of a symmetric result, which a Mirror modifier that stays makes whole again."""
 
 from dataclasses import dataclass
 from typing import cast
@@ -32,8 +32,8 @@ class NoHalf(Exception):
 class _Origins:
     vertex_corners: Int
     vertex_weights: Float
-    corner_corners: Int
-    corner_weights: Float
+    corner_corners: list[Int]
+    corner_weights: list[Float]
     faces: Int
 
 
@@ -60,7 +60,8 @@ def of(thing: bpy.types.Object, names: tuple[str, ...]) -> Half | None:
     axes = [(each, axis) for each in mirrors for axis in range(3) if each.use_axis[axis]]
     if len(axes) != 1 or axes[0][0].mirror_object:
         told = " and ".join(each.name for each in mirrors)
-        raise NoHalf(f"no half can be kept: modifier {told} mirrors not across one of its own axes")
+        why = "mirrors otherwise than across one axis of the object"
+        raise NoHalf(f"no half can be kept: modifier {told} {why}")
     ((modifier, axis),) = axes
     if modifier.use_bisect_axis[axis]:
         return Half(modifier.name, axis, -1 if modifier.use_bisect_flip_axis[axis] else 1)
@@ -69,7 +70,10 @@ def of(thing: bpy.types.Object, names: tuple[str, ...]) -> Half | None:
 
 
 def cut(result: orbflow_native.Remeshed, half: Half) -> orbflow_native.Remeshed:
-    """One half of a result, with all but its report; raises `NoHalf` where a face crosses the plane."""
+    """One half of a result, with all but its report.
+
+    Raises `NoHalf` where a face crosses the plane.
+    """
     starts, corners = result.loop_start, result.corner_vert
     sides = half.side * result.positions[:, half.axis][corners]
     low, high = (each.reduceat(sides, starts) for each in (np.minimum, np.maximum))
@@ -107,8 +111,8 @@ def _of_half(
     return _Origins(
         origins.vertex_corners[vertices],
         origins.vertex_weights[vertices],
-        origins.corner_corners[loops],
-        origins.corner_weights[loops],
+        [each[loops] for each in origins.corner_corners],
+        [each[loops] for each in origins.corner_weights],
         origins.faces[is_kept],
     )
 

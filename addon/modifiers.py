@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What modifiers make of a mesh: what is seen is what is remeshed.
 
-Modifiers that make geometry go into the result and leave the stack, and so do all before the last of
-them that is shown, in the stack's order. What follows a pose, a simulation or the time stays, and is
-off meanwhile; so is what follows the last one.
+Modifiers that make geometry go into the result and leave the stack, and so do all before the last
+of them that is shown, in the stack's order. What follows a pose, a simulation or the time stays,
+and is off meanwhile; so is what follows the last one.
 """
 
 from collections.abc import Iterator
@@ -204,7 +204,7 @@ def seen(context: bpy.types.Context, thing: bpy.types.Object, given: Stack) -> I
         materials = tuple(each and (each.name, _file_of(each)) for each in mesh.materials)
         applied = Applied(given, base, materials)
         lost += [text for each in thing.modifiers if (text := _unseen_levels(context, each))]
-        lost += _dropped(thing.data, mesh)
+        lost += _dropped(thing, mesh)
         yield Seen(copy.thing, moved, lost, applied)
 
 
@@ -212,8 +212,7 @@ def leave(things: list[bpy.types.Object], gone: Applied) -> None:
     """Takes modifiers that went into the mesh of objects from their stacks; adds materials."""
     for thing in things:
         for name in gone.stack.leaving():
-            if (modifier := thing.modifiers.get(name)) is not None:
-                thing.modifiers.remove(modifier)
+            _remove(thing, name)
     materials = things[0].data.materials
     for i, named in enumerate(gone.materials):
         material = named and bpy.data.materials.get(named)
@@ -221,6 +220,16 @@ def leave(things: list[bpy.types.Object], gone: Applied) -> None:
             materials.append(material)
         elif materials[i] != material:
             materials[i] = material
+
+
+def _remove(thing: bpy.types.Object, name: str) -> None:
+    """Takes a modifier from a stack, with its drivers, which Blender 4.2 leaves."""
+    if (modifier := thing.modifiers.get(name)) is not None:
+        thing.modifiers.remove(modifier)
+    if thing.animation_data:
+        drivers, path = thing.animation_data.drivers, bpy.utils.escape_identifier(name)
+        for driver in [each for each in drivers if f'modifiers["{path}"]' in each.data_path]:
+            drivers.remove(driver)
 
 
 def rest_of(result: orbflow_native.Remeshed, applied: Applied | None) -> orbflow_native.Remeshed:
@@ -299,8 +308,9 @@ def _pointed_at(thing: bpy.types.Object, value: Any) -> Any:  # noqa: ANN401 - a
     return (value and value.name_full) if is_told else (thing.name, getattr(value, "name_full", ""))
 
 
-def _dropped(base: bpy.types.Mesh, mesh: bpy.types.Mesh) -> list[str]:
-    """What of the artist's is on a mesh but not on what modifiers have made of it."""
+def _dropped(thing: bpy.types.Object, mesh: bpy.types.Mesh) -> list[str]:
+    """What of the artist's is on an object's mesh, but not on what modifiers have made of it."""
+    base = thing.data
     is_turned = base.has_custom_normals and not mesh.has_custom_normals
     told = ["custom normals"] * is_turned + [
         f"attribute {layer.name}"
@@ -308,8 +318,13 @@ def _dropped(base: bpy.types.Mesh, mesh: bpy.types.Mesh) -> list[str]:
         for layer in layers.read(base, domain)
         if layer.name not in _SHADING and layer.name not in mesh.attributes and layer.values.any()
     ]
-    is_weighted, is_still = (any(each.groups for each in one.vertices) for one in (base, mesh))
-    return told + ["vertex groups"] * (is_weighted and not is_still)
+    if thing.vertex_groups and _is_weighted(base) and not _is_weighted(mesh):
+        told.append("vertex groups")
+    return told
+
+
+def _is_weighted(mesh: bpy.types.Mesh) -> bool:
+    return any(vertex.groups for vertex in mesh.vertices)
 
 
 def _is_open(mesh: bpy.types.Mesh) -> bool:

@@ -146,7 +146,7 @@ class Settings:
     )
     mirror_modifier: EnumProperty(
         name="Mirror Modifier",
-        description="What becomes of a mesh that a Mirror modifier makes whole",
+        description="What becomes of a half that a Mirror modifier makes whole",
         items=_MIRROR_MODIFIERS,
         default="WHOLE",
     )

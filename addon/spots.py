@@ -77,7 +77,7 @@ def in_result(arrays: MeshArrays, result: orbflow_native.Remeshed) -> Numbers:
     kept = np.arange(n_faces - n_kept, n_faces, dtype=np.int32)
     numbers.faces[origins.faces[kept]] = kept
     corners = np.arange(int(result.loop_start[kept[0]]), len(result.corner_vert))
-    old = arrays.corner_vert[origins.corner_corners[corners, 0]]
+    old = arrays.corner_vert[origins.corner_corners[0][corners, 0]]
     numbers.vertices[old] = result.corner_vert[corners]
     return numbers
 

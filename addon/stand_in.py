@@ -12,11 +12,15 @@ from . import attributes
 from .artist import keys
 from .artist.keys import Key
 
+# What is simulated with other objects: a copy would collide with the object that it stands for.
+_SIMULATED = {"CLOTH", "COLLISION", "PARTICLE_SYSTEM", "SOFT_BODY"}
+
 
 class StandIn:
     """A copy of an object that is evaluated in its place, and the meshes made of it."""
 
     def __init__(self, context: bpy.types.Context, thing: bpy.types.Object) -> None:
+        """Copies an object, its mesh not."""
         self._context = context
         self._own = thing.data
         self.made: list[bpy.types.Mesh] = []
@@ -107,6 +111,8 @@ def stand_in(context: bpy.types.Context, thing: bpy.types.Object) -> Iterator[St
     try:
         # Drivers and actions would set anew what is switched here.
         made.thing.animation_data_clear()
+        for each in [each for each in made.thing.modifiers if each.type in _SIMULATED]:
+            made.thing.modifiers.remove(each)
         # No modifier can name this collection, so that none comes upon the copy.
         context.scene.collection.objects.link(made.thing)
         yield made

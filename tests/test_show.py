@@ -229,7 +229,7 @@ def numbers(thing: Any, stays: list[int]) -> Any:  # noqa: ANN401
         corner_vert=np.concatenate([np.zeros(n_new), new_corners]).astype(np.int32),
         origins=SimpleNamespace(
             faces=np.array([0] * 10 + stays, np.int32),
-            corner_corners=np.repeat([0] * n_new + corners, 3).reshape(-1, 3).astype(np.int32),
+            corner_corners=[np.repeat([0] * n_new + corners, 3).reshape(-1, 3).astype(np.int32)],
         ),
     )
     return addon("spots").in_result(arrays, result), vertices

@@ -9,7 +9,7 @@ import orbflow_native
 from numpy.typing import NDArray
 
 from .. import attributes
-from . import layers
+from . import cuts, layers
 from .layers import Layer, Mix
 
 Int = NDArray[np.int32]
@@ -17,6 +17,9 @@ Int = NDArray[np.int32]
 _DOMAINS = ("POINT", "CORNER", "FACE")
 # Texture coordinates of one place that differ by more are on two sides of a seam.
 _APART = 1e-5
+# Other numbers are cut where they jump by more than this share of their range: below, the grain of
+# paint and of baked light would cut everywhere; above, a border that is seen would be smeared.
+_VISIBLE = 1 / 32
 
 
 @dataclass(frozen=True)
@@ -26,8 +29,10 @@ class Elements:
     layers: dict[str, list[Layer]]
     #: The vertex of every corner.
     corner_vert: Int
-    #: The ends of the edges along which UV maps are cut, (E, 2).
-    cuts: Int
+    #: Sets of edges along which layers of corners are cut, each by the edges' ends, (E, 2).
+    cuts: list[Int]
+    #: By which of the sets each layer of corners is cut.
+    cut_by: list[int]
     #: Which UV maps and colors are active.
     active: dict[str, str]
 
@@ -35,9 +40,8 @@ class Elements:
 def read(mesh: bpy.types.Mesh) -> Elements:
     """Reads the attributes of a mesh."""
     found = {domain: list(layers.read(mesh, domain)) for domain in _DOMAINS}
-    maps = [layer.values for layer in found["CORNER"] if layer.kind == "FLOAT2"]
     corners = attributes.corner_verts(mesh)
-    return Elements(found, corners, _cuts(mesh, corners, maps), _active(mesh))
+    return Elements(found, corners, *_cuts(mesh, found["CORNER"]), _active(mesh))
 
 
 def write(mesh: bpy.types.Mesh, given: Elements, result: orbflow_native.Remeshed) -> Mix | None:
@@ -46,11 +50,14 @@ def write(mesh: bpy.types.Mesh, given: Elements, result: orbflow_native.Remeshed
     if origins is None:
         return None
     of_vertices = Mix(given.corner_vert[origins.vertex_corners], origins.vertex_weights)
-    of_corners = Mix(origins.corner_corners, origins.corner_weights)
+    of_corners = [
+        Mix(corners, weights)
+        for corners, weights in zip(origins.corner_corners, origins.corner_weights, strict=True)
+    ]
     for layer in given.layers["POINT"]:
         layer.mixed(of_vertices).write(mesh, "POINT")
-    for layer in given.layers["CORNER"]:
-        layer.mixed(of_corners).write(mesh, "CORNER")
+    for layer, number in zip(given.layers["CORNER"], given.cut_by, strict=True):
+        layer.mixed(of_corners[number]).write(mesh, "CORNER")
     for layer in given.layers["FACE"]:
         layer.taken(origins.faces).write(mesh, "FACE")
     for place, name in given.active.items():
@@ -58,28 +65,31 @@ def write(mesh: bpy.types.Mesh, given: Elements, result: orbflow_native.Remeshed
     return of_vertices
 
 
-def _cuts(mesh: bpy.types.Mesh, corner_vert: Int, maps: list[NDArray[np.float32]]) -> Int:
-    """The edges at which a place has other texture coordinates on one side than on the other."""
-    if not maps or not len(corner_vert):
-        return np.empty((0, 2), np.int32)
-    ends, sides = attributes.edge_verts(mesh), attributes.corner_edges(mesh)
-    loops = np.arange(len(sides), dtype=np.int32)
-    starts = attributes.loop_starts(mesh)
-    # The last corner of a face is followed by its first.
-    ahead = loops + 1
-    ahead[np.append(starts[1:], len(sides)) - 1] = starts
-    # Of every edge the sides on two faces, each by the corner it begins at.
-    first, last = np.zeros((2, len(ends)), np.int32)
-    first[sides[::-1]] = loops[::-1]
-    last[sides] = loops
-    is_turned = (corner_vert[first] != corner_vert[last])[:, None]
-    is_cut = np.zeros(len(ends), bool)
-    for coordinates in maps:
-        here, there = coordinates[last], coordinates[ahead[last]]
-        others = np.where(is_turned, there, here), np.where(is_turned, here, there)
-        for corner, other in zip((first, ahead[first]), others, strict=True):
-            is_cut |= (np.abs(coordinates[corner] - other) > _APART).any(axis=1)
-    return ends[is_cut]
+def _cuts(mesh: bpy.types.Mesh, layers: list[Layer]) -> tuple[list[Int], list[int]]:
+    """The sets of edges along which values of corners are cut, and which one is each layer's.
+
+    There is always a set.
+    """
+    if not layers:
+        return [np.empty((0, 2), np.int32)], []
+    seams = cuts.read(mesh)
+    sets: dict[bytes, tuple[int, Int]] = {}
+    which = []
+    for layer in layers:
+        is_cut = seams.jumps(layer.values, _least_jump(layer))
+        number, _ = sets.setdefault(is_cut.tobytes(), (len(sets), seams.pairs(is_cut)))
+        which.append(number)
+    return [edges for _, edges in sets.values()], which
+
+
+def _least_jump(layer: Layer) -> float:
+    """By how much values on two sides of a cut differ at least."""
+    if layer.kind == "FLOAT2":
+        return _APART
+    if layer.values.dtype != np.float32:
+        return 0.0
+    known = layer.values[np.isfinite(layer.values)]
+    return _VISIBLE * float(np.ptp(known)) if len(known) else 0.0
 
 
 def _active(mesh: bpy.types.Mesh) -> dict[str, str]:

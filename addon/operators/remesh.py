@@ -202,7 +202,7 @@ def _task(things: list[bpy.types.Object], seen: modifiers.Seen, wanted: settings
     thing, *others = things
     arrays = mesh_arrays.read(seen.thing.data, wanted.marked_edges)
     scale = tuple(thing.matrix_world.to_scale())
-    given = artist.read([seen.thing, *others])
+    given = artist.read([seen.thing] + [each for each in things if each != seen.thing])
     given = replace(given, keys=seen.keys, lost=given.lost + seen.lost)
     try:
         wish = density.read(seen.thing, wanted.density, given.groups)

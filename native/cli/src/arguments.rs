@@ -14,11 +14,12 @@ use crate::place::Place;
 
 const AFTER_HELP: &str = "\
 Meshes are read as OBJ, PLY, STL or OFF and written as OBJ, PLY or OFF, by the ending of the file
-name. '-' is standard input or output; standard input is recognised by its first bytes unless
---input-format is given, standard output is OBJ unless --output-format is given. Files are
-written whole or not at all.
+name; import others (glTF, FBX, ...) in Blender, or convert them. '-' is standard input or output;
+standard input is recognised by its first bytes unless --input-format is given, standard output is
+OBJ unless --output-format is given. Files are written whole or not at all.
 
-Exit codes: 0 done, 2 wrong usage, 3 this input cannot be done, 130 cancelled by Ctrl-C.";
+Exit codes: 0 done, 2 wrong usage, 3 this input cannot be done (with --strict: not soundly), 130
+cancelled by Ctrl-C.";
 
 /// Rebuild meshes with a chosen face count and good edge flow, by deforming a sphere.
 #[derive(Parser, Debug)]

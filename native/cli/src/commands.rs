@@ -125,7 +125,8 @@ impl<'a> Rebuilding<'a> {
         settings: &Settings,
         predictor: &dyn OffsetPredictor,
     ) -> Result<Remeshed, Error> {
-        let place = &self.files.files.input.input;
+        let files = self.files;
+        let place = &files.files.input.input;
         let input = Input {
             materials: materials(&self.file),
             density: self.density.as_deref(),
@@ -134,10 +135,17 @@ impl<'a> Rebuilding<'a> {
         let remeshed = with_bar(self.token, |progress| {
             pipeline::remesh(input, settings, predictor, progress)
         });
-        let remeshed = remeshed.map_err(|cause| Error::pipeline(place, cause))?;
-        tell(place, &remeshed.report.clean);
-        parts::tell(place, &remeshed.report.kept);
-        if let Some(report) = &self.files.report {
+        let remeshed = match remeshed {
+            Err(pipeline::Error::Unsound { report, .. }) => {
+                tell_all(place, &report);
+                self.tell_only(&report)?;
+                let place = place.clone();
+                return Err(Error::Unsound { place });
+            }
+            remeshed => remeshed.map_err(|cause| Error::pipeline(place, cause))?,
+        };
+        tell_all(place, &remeshed.report);
+        if let Some(report) = &files.report {
             self.outputs.write_report(report, &remeshed.report)?;
         }
         Ok(remeshed)
@@ -165,7 +173,7 @@ impl<'a> Rebuilding<'a> {
     }
 
     /// Writes the report alone, where one was asked for.
-    fn tell_only(self, report: &pipeline::Report) -> Result<(), Error> {
+    fn tell_only(&self, report: &pipeline::Report) -> Result<(), Error> {
         let mut outputs = Outputs::new(&self.files.report)?;
         if let Some(place) = &self.files.report {
             outputs.write_report(place, report)?;
@@ -238,7 +246,7 @@ fn score(arguments: &Score, interrupt: &Interrupt) -> Result<(), Error> {
     let mut outputs = Outputs::new([place])?;
     let settings = score::Settings::default();
     let figures = with_bar(token, |progress| {
-        score::score(&input.mesh, &output.mesh, &settings, progress)
+        pipeline::score(&input.mesh, &output.mesh, &settings, progress)
     });
     let figures = figures.map_err(|error| match error {
         score::Error::Cancelled(Cancelled) => Error::Cancelled(Cancelled),
@@ -263,6 +271,16 @@ fn format(place: &Place, wanted: Option<Format>) -> Format {
 fn tell(place: &Place, report: &clean::Report) {
     for sentence in report.sentences() {
         eprintln!("{place}: {sentence}");
+    }
+}
+
+/// Says what had to be mended in the input, which parts are as they were, and what is not as it was
+/// to be in the result.
+fn tell_all(place: &Place, report: &pipeline::Report) {
+    tell(place, &report.clean);
+    parts::tell(place, &report.kept);
+    for warning in &report.warnings {
+        eprintln!("{place}: warning: {}", warning.text);
     }
 }
 

@@ -22,6 +22,12 @@ pub enum Error {
     /// The input cannot be opened or its bytes not fetched.
     #[error("cannot read {place}: {cause}")]
     Open { place: Place, cause: io::Error },
+    /// The input is a file of another program.
+    #[error(
+        "{place}: a {name} file cannot be read; open it in Blender, where the add-on does the same, or \
+         convert it to OBJ or PLY"
+    )]
+    Foreign { place: Place, name: &'static str },
     /// The input's bytes are no mesh.
     #[error("{place}: {cause}")]
     Read { place: Place, cause: ReadError },
@@ -56,6 +62,9 @@ pub enum Error {
     /// No part of the mesh can be done, or in a strict run not all.
     #[error("{}", lines.join(&format!("\norbflow: {place}: ")))]
     Refused { place: Place, lines: Vec<String> },
+    /// A strict run made a result that is not fit for use.
+    #[error("{place}: the result is not sound, so no mesh was written; the warnings say why")]
+    Unsound { place: Place },
     /// The network's proposal for a part was no use.
     #[error(
         "{place}: the proposal for part {part} of {n_parts} is beyond repair: {n_folds} triangles are \

@@ -7,14 +7,22 @@ use std::path::Path;
 use orbflow_geometry::mesh::io::{self as mesh_io, Format, MeshFile};
 
 use crate::error::Error;
+use crate::foreign;
 use crate::place::Place;
 
-/// Reads a mesh in the given format, or in that of the file's name, or in that of its bytes.
+/// Reads a mesh in the given format, or in that of the file's name, or in that of its bytes. Files of
+/// other programs are named as such.
 pub fn read(place: &Place, format: Option<Format>) -> Result<MeshFile, Error> {
     let bytes = bytes(place).map_err(|cause| Error::Open {
         place: place.clone(),
         cause,
     })?;
+    if format.is_none()
+        && let Some(name) = foreign::name(place.path(), &bytes)
+    {
+        let place = place.clone();
+        return Err(Error::Foreign { place, name });
+    }
     let format = format
         .or_else(|| place.path().and_then(Format::from_path))
         .unwrap_or_else(|| Format::sniff(&bytes));

@@ -1,6 +1,7 @@
 //! The program `orbflow`: the core's verbs on mesh files.
 //!
-//! Exit codes: 0 done, 2 wrong usage, 3 this input cannot be done, 130 stopped by Ctrl-C. Files
+//! Exit codes: 0 done, 2 wrong usage, 3 this input cannot be done (or, in strict runs, not soundly),
+//! 130 stopped by Ctrl-C. Files
 //! are written whole or not at all, all of a run's files together, after all work is done and after
 //! what goes to streams and devices. On the way are written only the set, what training goes on
 //! from, and the meshes of an evaluation.
@@ -11,6 +12,7 @@ mod commands;
 mod error;
 #[cfg(feature = "train")]
 mod evaluate;
+mod foreign;
 mod inputs;
 mod interrupt;
 mod outputs;

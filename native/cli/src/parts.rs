@@ -23,7 +23,8 @@ pub struct Parts {
     /// most; off: weld equal points alone
     #[arg(long, value_name = "D|off", default_value = "1e-5", value_parser = weld)]
     pub weld: Weld,
-    /// End with 3 where a part cannot be done, instead of leaving it as it was
+    /// End with 3 where a part cannot be done, instead of leaving it as it was, and where a warning
+    /// of the result is grave: inverted quads, crossing faces, a surface that is far off
     #[arg(long)]
     pub strict: bool,
 }

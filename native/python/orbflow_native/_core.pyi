@@ -1,7 +1,7 @@
 """The compiled half of the package `orbflow_native`."""
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Final, TypeAlias, final
 
 import numpy as np
@@ -41,10 +41,12 @@ class OrbflowError(Exception):
 class InputError(OrbflowError):
     """This input or this setting cannot be done; the text says why, with numbers.
 
-    `kept` lists the parts that cannot be done, as a report does.
+    `kept` lists the parts that cannot be done and `warnings` what is wrong with a result that a
+    strict run refuses, as a report does.
     """
 
     kept: list[dict[str, Any]]
+    warnings: list[dict[str, Any]]
 
 class Cancelled(OrbflowError):
     """The job was stopped by its cancel token; nothing was changed."""
@@ -74,12 +76,12 @@ class Origins:
         """`(V, 3) float32`: their weights, which sum to 1."""
 
     @property
-    def corner_corners(self) -> _Ints:
-        """`(L, 3) int32`: of every corner three corners of one face of the input."""
+    def corner_corners(self) -> list[_Ints]:
+        """For each set of cuts `(L, 3) int32`: of every corner three corners of an input face."""
 
     @property
-    def corner_weights(self) -> _Floats:
-        """`(L, 3) float32`: their weights, which sum to 1."""
+    def corner_weights(self) -> list[_Floats]:
+        """For each set of cuts `(L, 3) float32`: their weights, which sum to 1."""
 
     @property
     def faces(self) -> _Ints:
@@ -207,7 +209,7 @@ def remesh(
     material_index: _Ints | None = None,
     marked_edges: _Ints | None = None,
     carried_edges: _Ints | None = None,
-    cut_edges: _Ints | None = None,
+    cut_edges: Sequence[_Ints] | None = None,
     density: _Floats | None = None,
     reduced: tuple[_Floats, _Ints] | None = None,
     progress: _Listener | None = None,
@@ -250,4 +252,7 @@ def score(
     progress: _Listener | None = None,
     cancel: CancelToken | None = None,
 ) -> dict[str, Any]:
-    """Says in numbers how good `output` is as a new mesh of `input`."""
+    """Says in numbers how good `output` is as a new mesh of `input`.
+
+    Whether the topology is the same is told of the input once it is cleaned as `remesh` does it.
+    """

@@ -13,7 +13,7 @@ import os
 import subprocess
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -69,7 +69,7 @@ def remesh(
     material_index: _Ints | None = None,
     marked_edges: _Ints | None = None,
     carried_edges: _Ints | None = None,
-    cut_edges: _Ints | None = None,
+    cut_edges: Sequence[_Ints] | None = None,
     density: _Floats | None = None,
     reduced: tuple[_Floats, _Ints] | None = None,
     progress: Callable[[str, float], Any] | None = None,
@@ -94,8 +94,9 @@ def remesh(
     go: `small_parts` is "keep" or "drop". Borders that lie on each other are welded up to a gap of
     `weld` times the diagonal; `None` welds equal points alone.
     Edges of the result that lie on `carried_edges` (E, 2) are told, so that what is marked on
-    these can be carried over. With `cut_edges` (E, 2), along which data on corners is cut as
-    texture coordinates are along seams, the result tells where each of its elements comes from.
+    these can be carried over. `cut_edges` are edges (E, 2) along which data on corners is cut as
+    texture coordinates are along seams, a list with a set of them for each way in which data is
+    cut; with it, the result tells where each of its elements comes from.
     `predictor` is "auto", "network" or "solver": auto takes the network for maps of 20,000
     vertices or more, some 10,000 quads, else the solver. The network has the weights of the
     wheel, or `weights`: the bytes of a file that `orbflow train` wrote, or its path. `n_crosses`

@@ -1,7 +1,7 @@
 //! The one place that turns errors of the core into Python exceptions.
 
 use glam::DVec3;
-use orbflow_geometry::pipeline::Kept;
+use orbflow_geometry::pipeline::{Kept, Warning};
 use orbflow_geometry::{pipeline, score};
 use pyo3::create_exception;
 use pyo3::exceptions::PyException;
@@ -21,7 +21,8 @@ create_exception!(
     InputError,
     OrbflowError,
     "This input or this setting cannot be done; the text says why, with numbers. `kept` lists the \
-     parts that cannot be done, as a report does."
+     parts that cannot be done and `warnings` what is wrong with a result that a strict run refuses, \
+     as a report does."
 );
 create_exception!(
     orbflow_native,
@@ -30,10 +31,11 @@ create_exception!(
     "The job was stopped by its cancel token; nothing was changed."
 );
 
-/// Gives every `InputError` the list of parts that an error may carry.
+/// Gives every `InputError` the lists of parts and warnings that an error may carry.
 pub fn init(py: Python<'_>) -> PyResult<()> {
-    py.get_type::<InputError>()
-        .setattr("kept", PyList::empty(py))
+    let class = py.get_type::<InputError>();
+    class.setattr("kept", PyList::empty(py))?;
+    class.setattr("warnings", PyList::empty(py))
 }
 
 /// The error of a verb: the user stopped it, or the input cannot be done.
@@ -43,6 +45,11 @@ pub trait VerbError: std::error::Error + Send {
 
     /// The parts that cannot be done, where these are why.
     fn kept(&self) -> &[Kept] {
+        &[]
+    }
+
+    /// What is wrong with a result, where that is why.
+    fn warnings(&self) -> &[Warning] {
         &[]
     }
 }
@@ -55,6 +62,13 @@ impl VerbError for pipeline::Error {
     fn kept(&self) -> &[Kept] {
         match self {
             Self::Refused { kept, .. } => kept,
+            _ => &[],
+        }
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        match self {
+            Self::Unsound { warnings, .. } => warnings,
             _ => &[],
         }
     }
@@ -73,12 +87,22 @@ pub fn exception(py: Python<'_>, error: &impl VerbError, scale: DVec3) -> PyErr 
         return Cancelled::new_err(text);
     }
     let exception = InputError::new_err(text);
-    if error.kept().is_empty() {
-        return exception;
+    match tell(py, &exception, error, scale) {
+        Ok(()) => exception,
+        Err(told) => told,
     }
-    let kept = report::dict(py, &unscaled(error.kept(), scale));
-    let told = kept.and_then(|kept| exception.value(py).setattr("kept", kept));
-    told.err().unwrap_or(exception)
+}
+
+/// Gives an exception the lists that its error carries.
+fn tell(py: Python<'_>, to: &PyErr, error: &impl VerbError, scale: DVec3) -> PyResult<()> {
+    let value = to.value(py);
+    if !error.kept().is_empty() {
+        value.setattr("kept", report::dict(py, &unscaled(error.kept(), scale))?)?;
+    }
+    if !error.warnings().is_empty() {
+        value.setattr("warnings", report::dict(py, &error.warnings())?)?;
+    }
+    Ok(())
 }
 
 /// Parts with their places in the coordinates of the caller.

@@ -11,10 +11,10 @@ pub struct Origins {
     vertex_corners: Py<PyArray2<i32>>,
     /// `(V, 3) float32`: their weights, which sum to 1.
     vertex_weights: Py<PyArray2<f32>>,
-    /// `(L, 3) int32`: of every corner three corners of one face of the input.
-    corner_corners: Py<PyArray2<i32>>,
-    /// `(L, 3) float32`: their weights, which sum to 1.
-    corner_weights: Py<PyArray2<f32>>,
+    /// For each set of cuts `(L, 3) int32`: of every corner three corners of one face of the input.
+    corner_corners: Vec<Py<PyArray2<i32>>>,
+    /// For each set of cuts `(L, 3) float32`: their weights, which sum to 1.
+    corner_weights: Vec<Py<PyArray2<f32>>>,
     /// `(F,) int32`: the face of the input under every face.
     faces: Py<PyArray1<i32>>,
 }
@@ -23,7 +23,9 @@ impl Origins {
     /// The arrays of origins.
     pub fn new(py: Python<'_>, origins: &pipeline::Origins) -> PyResult<Self> {
         let (vertex_corners, vertex_weights) = arrays(py, &origins.vertices)?;
-        let (corner_corners, corner_weights) = arrays(py, &origins.corners)?;
+        let of_sets = origins.corners.iter().map(|set| arrays(py, set));
+        let of_sets = of_sets.collect::<PyResult<Vec<_>>>()?;
+        let (corner_corners, corner_weights) = of_sets.into_iter().unzip();
         let faces = origins.faces.iter().map(|face| face.0 as i32);
         Ok(Self {
             vertex_corners,

@@ -52,8 +52,9 @@ pub struct Remeshed {
 /// across "x", "y" or "z", or with "auto" across the first in which every vertex, with its density and
 /// marks, is the image of another; with "off" across none.
 /// Edges of the result that lie on `carried_edges` `(E, 2) int32` are told, so that marks on these can
-/// be carried over. With `cut_edges` `(E, 2) int32`, along which data on corners is cut as texture
-/// coordinates are along seams, the result tells where each of its elements comes from.
+/// be carried over. `cut_edges` are edges `(E, 2) int32` along which data on corners is cut as texture
+/// coordinates are along seams, a list with a set of them for each way in which data is cut; with
+/// it, the result tells where each of its elements comes from.
 /// Parts that cannot be done stay as they were: their faces come last and are `kept_faces`, and the
 /// report's `kept` says why; a `strict` run raises instead. Parts too small for their share of the
 /// faces, or smaller than `small_size` percent of the diagonal, stay or go: `small_parts` is "keep" or
@@ -106,7 +107,7 @@ pub fn remesh<'py>(
     material_index: Option<&Bound<'py, PyAny>>,
     marked_edges: Option<&Bound<'py, PyAny>>,
     carried_edges: Option<&Bound<'py, PyAny>>,
-    cut_edges: Option<&Bound<'py, PyAny>>,
+    cut_edges: Option<Vec<Bound<'py, PyAny>>>,
     density: Option<&Bound<'py, PyAny>>,
     reduced: Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
     progress: Option<Bound<'py, PyAny>>,
@@ -125,7 +126,9 @@ pub fn remesh<'py>(
     let pairs = |array: Option<_>, kind| array.map(|a| arrays::vertex_pairs(a, kind)).transpose();
     let marked = pairs(marked_edges, "marked")?;
     let carried = pairs(carried_edges, "carried")?;
-    let cuts = pairs(cut_edges, "cut")?;
+    let cut = |set: &Bound<'py, PyAny>| arrays::vertex_pairs(set, "cut");
+    let cuts = cut_edges.map(|sets| sets.iter().map(cut).collect::<PyResult<Vec<_>>>());
+    let cuts = cuts.transpose()?;
     let density = density.map(arrays::densities).transpose()?;
     let reduced = reduced
         .map(|(points, triangles)| arrays::triangles(&points, &triangles, scale))

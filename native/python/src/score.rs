@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 use orbflow_geometry::mesh::PolygonMesh;
-use orbflow_geometry::score::{Settings, score as core_score};
+use orbflow_geometry::pipeline;
+use orbflow_geometry::score::Settings;
 use pyo3::prelude::*;
 
 use crate::arrays::MeshArrays;
@@ -15,7 +16,8 @@ type Arrays<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyAny>);
 /// Says in numbers how good `output` is as a new mesh of `input`.
 ///
 /// `target` is the number of quads that was asked for, a triangle being half a quad; `n_samples` is
-/// how many points of each surface the distances are measured at, starting at `seed`.
+/// how many points of each surface the distances are measured at, starting at `seed`. Whether the
+/// topology is the same is told of the input once it is cleaned as `remesh` does it.
 /// Raises `InputError` when a mesh cannot be scored, `Cancelled` when the token was raised.
 #[pyfunction]
 #[pyo3(signature = (input, output, *, target=None, n_samples=100_000, seed=0, progress=None, cancel=None))]
@@ -40,7 +42,7 @@ pub fn score<'py>(
         seed,
     };
     let score = Job::new(progress, cancel).run(py, |progress| {
-        core_score(&input, &output, &settings, progress)
+        pipeline::score(&input, &output, &settings, progress)
     })?;
     Ok(report::dict(py, &score)?.unbind())
 }

@@ -12,7 +12,6 @@
 //! Not done: holes stay open, parts that cross stay crossed, an inside-out part stays so.
 
 mod apart;
-mod ears;
 mod edges;
 mod fans;
 mod mend;

@@ -14,6 +14,7 @@ use glam::DVec3;
 use super::Apart;
 use super::scale::Scale;
 use super::weld::bits;
+use crate::groups::Groups;
 use crate::mesh::{FaceId, HalfedgeId, Id, PolygonMesh, bounds};
 use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
@@ -67,11 +68,11 @@ pub(super) fn close(
             gap = gap.max(pair.gap);
         }
     }
-    let (moved, n_welded) = borders.moved();
+    let moved = borders.moved();
     let place = |p: &DVec3| moved.get(&p.to_array().map(bits)).copied().unwrap_or(*p);
-    Ok((n_welded > 0).then(|| Closed {
+    Ok((!moved.is_empty()).then(|| Closed {
         positions: input.positions().iter().map(place).collect(),
-        n_welded,
+        n_welded: moved.len(),
         gap: scale.length(gap),
     }))
 }
@@ -84,9 +85,9 @@ struct Borders {
     scaled: Vec<DVec3>,
     edges: Vec<[u32; 2]>,
     is_used: Vec<bool>,
-    /// The point that stands for each; itself if it stays.
-    first: Vec<u32>,
-    /// The faces at all points that each stands for, in order.
+    /// Points that became one; the first of them stays.
+    groups: Groups,
+    /// The faces at all points of the group of each first point, in order.
     faces: Vec<Vec<FaceId>>,
 }
 
@@ -132,7 +133,7 @@ impl Borders {
         let edges: Vec<[u32; 2]> = edges.collect();
         Self {
             scaled: points.iter().map(|&p| scale.point(p)).collect(),
-            first: (0..points.len() as u32).collect(),
+            groups: Groups::new(points.len()),
             points,
             is_used: vec![false; edges.len()],
             edges,
@@ -183,12 +184,11 @@ impl Borders {
         if pair.edges.iter().any(|&edge| self.is_used[edge as usize]) {
             return false;
         }
-        let ends = pair.ends.map(|ends| ends.map(|p| self.first[p as usize]));
-        if !ends.iter().all(|&ends| self.may_weld(ends)) {
+        if !pair.ends.into_iter().all(|ends| self.may_weld(ends)) {
             return false;
         }
-        for [p, q] in pair.ends {
-            self.join([p, q].map(|p| self.first[p as usize]));
+        for ends in pair.ends {
+            self.join(ends);
         }
         for edge in pair.edges {
             self.is_used[edge as usize] = true;
@@ -196,33 +196,112 @@ impl Borders {
         true
     }
 
-    fn may_weld(&self, [p, q]: [u32; 2]) -> bool {
-        let [of_p, of_q] = [p, q].map(|p| &self.faces[p as usize]);
+    fn may_weld(&mut self, ends: [u32; 2]) -> bool {
+        let [p, q] = ends.map(|p| self.groups.root(p as usize));
+        let [of_p, of_q] = [p, q].map(|p| &self.faces[p]);
         p == q || !of_p.iter().any(|face| of_q.binary_search(face).is_ok())
     }
 
-    fn join(&mut self, [p, q]: [u32; 2]) {
-        if p == q {
-            return;
-        }
-        let [stays, goes] = [p.min(q), p.max(q)];
-        let mut faces = std::mem::take(&mut self.faces[goes as usize]);
-        faces.append(&mut self.faces[stays as usize]);
-        faces.sort_unstable();
-        self.faces[stays as usize] = faces;
-        for first in self.first.iter_mut().filter(|first| **first == goes) {
-            *first = stays;
+    fn join(&mut self, ends: [u32; 2]) {
+        let [p, q] = ends.map(|p| self.groups.root(p as usize));
+        if self.groups.link(p, q) {
+            let goes = std::mem::take(&mut self.faces[p.max(q)]);
+            let stays = &mut self.faces[p.min(q)];
+            stays.extend(goes);
+            stays.sort_unstable();
         }
     }
 
-    /// Where points go that do not stay, by their own places, and how many there are.
-    fn moved(&self) -> (HashMap<[u64; 3], DVec3>, usize) {
-        let all = self.points.iter().zip(&self.first).enumerate();
-        let gone = all.filter(|(i, (_, first))| *i != **first as usize);
-        let moved: HashMap<_, _> = gone
-            .map(|(_, (p, &first))| (p.to_array().map(bits), self.points[first as usize]))
+    /// Where points go that do not stay, by their own places.
+    fn moved(&mut self) -> HashMap<[u64; 3], DVec3> {
+        let mut moved = HashMap::new();
+        for (i, p) in self.points.iter().enumerate() {
+            let first = self.groups.root(i);
+            if first != i {
+                moved.insert(p.to_array().map(bits), self.points[first]);
+            }
+        }
+        moved
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clean::take_apart;
+    use crate::elementary::direction;
+
+    /// A ring of quads round a hole, from points of its rim; each goes outwards too.
+    fn around(rim: &[DVec3]) -> PolygonMesh {
+        let n = rim.len() as u32;
+        let outer = rim.iter().map(|&p| p * 2.0 + DVec3::Z);
+        let positions = rim.iter().copied().chain(outer).collect();
+        let quad = |i: u32| [i, (i + 1) % n, n + (i + 1) % n, n + i];
+        let faces: Vec<[u32; 4]> = (0..n).map(quad).collect();
+        PolygonMesh::from_faces(positions, &faces).unwrap()
+    }
+
+    /// How many points are welded where gaps of nearly the whole mesh would do.
+    fn n_welded(mesh: &PolygonMesh, weld: f64) -> usize {
+        let apart = take_apart(mesh, Some(weld), &Progress::none()).unwrap();
+        apart.report.n_seam_welded
+    }
+
+    #[test]
+    fn a_round_hole_stays_open_whatever_its_size() {
+        for n in [3, 4, 5, 8, 40] {
+            let corner = |i: i32| direction(f64::from(i) * std::f64::consts::TAU / f64::from(n));
+            let rim: Vec<DVec3> = (0..n).map(|i| corner(i).extend(0.0)).collect();
+            assert_eq!(n_welded(&around(&rim), 1.0), 0, "{n} corners");
+        }
+    }
+
+    #[test]
+    fn a_slit_closes_along_its_length() {
+        let side = |y: f64| (1..8).map(move |x| DVec3::new(f64::from(x), y, 0.0));
+        let tips = [0.0, 8.0].map(|x| DVec3::new(x, 0.0, 0.0));
+        let below = side(-1e-6);
+        let above: Vec<DVec3> = side(1e-6).rev().collect();
+        let rim: Vec<DVec3> = [tips[0]]
+            .into_iter()
+            .chain(below)
+            .chain([tips[1]])
             .collect();
-        let n = moved.len();
-        (moved, n)
+        let rim = [rim, above].concat();
+        let mesh = around(&rim);
+        assert_eq!((n_welded(&mesh, 1e-6), n_welded(&mesh, 1e-8)), (7, 0));
+        let apart = take_apart(&mesh, Some(1e-6), &Progress::none()).unwrap();
+        assert_eq!(apart.mesh.border_loops().len(), 1, "the outer rim is left");
+        assert!((apart.report.weld_distance - 2e-6).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_thin_ribbon_does_not_collapse() {
+        let point = |i: u32| DVec3::new(f64::from(i / 2), f64::from(i % 2) * 1e-9, 0.0);
+        let quads: Vec<[u32; 4]> = (0..4)
+            .map(|i| [2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1])
+            .collect();
+        let mesh = PolygonMesh::from_faces((0..10).map(point).collect(), &quads).unwrap();
+        assert_eq!(n_welded(&mesh, 0.01), 0);
+    }
+
+    #[test]
+    fn seams_close_at_any_size() {
+        for exponent in [-990, -300, 0, 300, 990] {
+            let size = 2_f64.powi(exponent);
+            let bit = |i: u32, b: u32| f64::from(i >> b & 1);
+            let corner = |i: u32| DVec3::new(bit(i, 0), bit(i, 1), bit(i, 2));
+            let quads = crate::shapes::CUBE_QUADS;
+            let positions = quads.iter().enumerate().flat_map(|(face, quad)| {
+                let away = DVec3::splat(1e-7 * face as f64);
+                quad.map(|i| (corner(i) + away) * size)
+            });
+            let faces: Vec<[u32; 4]> = (0..6).map(|f| [0, 1, 2, 3].map(|i| 4 * f + i)).collect();
+            let mesh = PolygonMesh::from_faces(positions.collect(), &faces).unwrap();
+            let apart = take_apart(&mesh, Some(WELD), &Progress::none()).unwrap();
+            assert!(apart.mesh.is_closed(), "{exponent}");
+            assert_eq!((apart.report.n_seam_welded, apart.report.n_welded), (16, 0));
+            assert!((apart.report.weld_distance / size) < 1e-6, "{exponent}");
+        }
     }
 }

@@ -235,3 +235,49 @@ fn a_cancelled_job_stops() {
     let result = clean(&mesh, &Progress::silent(token));
     assert_eq!(result, Err(Error::Cancelled(Cancelled)));
 }
+
+#[test]
+fn blocks_that_share_an_edge_part_there() {
+    // Two cubes with the edge's vertices 3 and 7 in common.
+    let mut positions = cube_points();
+    positions.extend(cube_points().iter().map(|p| *p + DVec3::new(1.0, 1.0, 0.0)));
+    let shared = |v: u32| match v {
+        0 => 3,
+        4 => 7,
+        _ => v + 8,
+    };
+    for n_turned in [0, 6] {
+        let mut faces = cube_quads();
+        let others = cube_quads().into_iter();
+        faces.extend(others.map(|f| f.into_iter().map(shared).collect::<Vec<u32>>()));
+        // Inside out, what lies between the blocks is their inside: one closed part.
+        faces[..2 * n_turned]
+            .iter_mut()
+            .for_each(|face| face.reverse());
+        let result = cleaned(positions.clone(), &faces).unwrap();
+        assert!(result.mesh.is_closed(), "{n_turned}");
+        let n_parts = result.mesh.face_components().1;
+        assert_eq!(n_parts, if n_turned == 0 { 2 } else { 1 });
+    }
+}
+
+#[test]
+fn one_bad_part_leaves_the_others_apart() {
+    let mut positions = cube_points();
+    positions.extend([3.0, 4.0, 5.0].map(|x| DVec3::new(x, x * x, 0.0)));
+    positions.push(DVec3::new(4.0, 1.0, 7.0));
+    positions.push(DVec3::new(4.0, 1.0, 9.0));
+    let mut faces = cube_quads();
+    faces.splice(2..2, [vec![8, 9, 10], vec![8, 9, 11], vec![9, 8, 12]]);
+    let mesh = PolygonMesh::from_faces(positions, &faces).unwrap();
+    let apart = take_apart(&mesh, None, &Progress::none()).unwrap();
+    assert!(apart.mesh.is_closed());
+    assert_eq!((apart.mesh.n_faces(), apart.source.len()), (12, 12));
+    let [tangle] = &apart.tangles[..] else {
+        panic!("{:?}", apart.tangles);
+    };
+    assert_eq!(tangle.faces, [2, 3, 4].map(FaceId));
+    assert_eq!((tangle.border.len(), tangle.shared.len()), (6, 1));
+    let ends = [VertexId(8), VertexId(9)];
+    assert_eq!(tangle.shared[0], SharedEdge { n_faces: 3, ends });
+}

@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
-use super::ears::clip_ears;
 use super::edges::Edges;
 use super::polygons::Polygons;
 use super::scale::Scale;
+use crate::measure::clip_ears;
 use crate::mesh::{FaceId, Id, PolygonMesh, VertexId};
 
 /// A diagonal must be shorter than the other by more than this share to be taken instead: the
@@ -110,8 +110,9 @@ impl Triangulated {
                 });
             }
             _ => {
-                let flat = self.flattened(polygon);
-                match clip_ears(&flat) {
+                let point = |v: &VertexId| self.scale.point(self.positions[v.index()]);
+                let points: Vec<DVec3> = polygon.iter().map(point).collect();
+                match clip_ears(&points) {
                     Some(triangles) => {
                         let faces = triangles
                             .into_iter()
@@ -152,21 +153,6 @@ impl Triangulated {
         }
         let [first, second] = [(c - a).length_squared(), (d - b).length_squared()];
         first <= second * (1.0 + CLEARLY_SHORTER)
-    }
-
-    /// A polygon on the plane that fits it best (Newell's normal), counter-clockwise.
-    fn flattened(&self, polygon: &[VertexId]) -> Vec<DVec2> {
-        let point = |v: &VertexId| self.scale.point(self.positions[v.index()]);
-        let origin = polygon.first().map_or(DVec3::ZERO, point);
-        let points: Vec<DVec3> = polygon.iter().map(|v| point(v) - origin).collect();
-        let next = points.iter().cycle().skip(1);
-        let normal: DVec3 = points.iter().zip(next).map(|(p, q)| p.cross(*q)).sum();
-        let normal = normal.try_normalize().unwrap_or(DVec3::Z);
-        let (x, y) = normal.any_orthonormal_pair();
-        points
-            .iter()
-            .map(|p| DVec2::new(p.dot(x), p.dot(y)))
-            .collect()
     }
 
     /// Cuts polygons another way whose diagonals give an edge more than two triangles, and says

@@ -4,6 +4,7 @@
 //! that they drop out of sums instead of poisoning them.
 
 mod curvature;
+mod ears;
 mod polygon_edges;
 mod polyline;
 mod sharp;
@@ -15,10 +16,11 @@ use crate::elementary::atan2;
 use crate::mesh::{FaceId, FaceMap, HalfedgeId, TriangleMesh, VertexMap};
 
 pub use curvature::{Curvature, CurvatureField, principal_curvatures};
+pub use ears::{clip_ears, cut_polygon};
 pub use polygon_edges::PolygonEdges;
 pub use polyline::{Polyline, Seam};
 pub use sharp::sharp_edges;
-pub use topology::{Topology, topology, topology_of};
+pub use topology::{Topology, topology, topology_of, topology_of_triangles};
 
 /// The area of every face.
 pub fn face_areas(mesh: &TriangleMesh) -> FaceMap<f64> {

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::PolygonEdges;
 use crate::groups::Groups;
-use crate::mesh::{Id, PolygonMesh};
+use crate::mesh::{Id, PolygonMesh, TriangleMesh};
 use crate::progress::{Cancelled, Progress};
 
 /// Counts that do not depend on positions.
@@ -71,6 +71,30 @@ pub fn topology_of(
         manifold,
         n_borders,
     })
+}
+
+/// The same for triangles that are a manifold mesh already, each of whose vertices has a face.
+pub fn topology_of_triangles(mesh: &TriangleMesh) -> Topology {
+    let [n_components, n_borders] = [mesh.face_components().1, mesh.border_loops().len()];
+    let genus = (2 * n_components as i64 - n_borders as i64 - mesh.euler_number()).div_euclid(2);
+    Topology {
+        n_vertices: mesh.n_vertices(),
+        n_faces: mesh.n_faces(),
+        n_quads: 0,
+        n_components,
+        genus: Some(genus),
+        closed: n_borders == 0,
+        manifold: true,
+        n_borders,
+    }
+}
+
+impl Topology {
+    /// Whether another mesh hangs together alike, whatever its counts of vertices and faces.
+    pub fn is_alike(&self, other: &Self) -> bool {
+        let figures = |t: &Self| (t.closed, t.manifold, t.n_components, t.n_borders, t.genus);
+        figures(self) == figures(other)
+    }
 }
 
 /// How many groups of vertices the edges with a wanted number of sides make.

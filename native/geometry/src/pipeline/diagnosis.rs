@@ -1,8 +1,8 @@
 //! What keeps each part of a mesh from being remeshed: all of it, with numbers.
 
-use super::Settings;
 use super::kept::{Flaw, Reason, count};
 use super::split::Part;
+use super::{Settings, handle};
 use crate::clean::{self, Apart, Tangle};
 use crate::groups::Groups;
 use crate::mesh::{FaceId, HalfedgeId, Id, PolygonMesh, TriangleMesh, VertexId};
@@ -20,7 +20,14 @@ pub fn parts(
             .filter(|_| apart.is_open())
             .map(|share| clean::distance(mesh, share)),
     };
-    let surfaces = surfaces(apart, component, n).into_iter().enumerate();
+    let mut surfaces = surfaces(apart, component, n);
+    if surfaces.iter().any(|surface| surface.genus() != 0) {
+        let loops = handle::loops(&apart.mesh, component, n);
+        for (surface, edges) in surfaces.iter_mut().zip(loops) {
+            surface.handle = edges.iter().map(|e| e.map(|v| apart.origin[v])).collect();
+        }
+    }
+    let surfaces = surfaces.into_iter().enumerate();
     let surfaces = surfaces.map(|(i, surface)| Part {
         surface: Some(i),
         reasons: told.of_surface(&surface),
@@ -44,6 +51,8 @@ struct Surface {
     n_triangles: usize,
     n_loops: usize,
     border: Vec<[VertexId; 2]>,
+    /// A loop of a handle, if there is one.
+    handle: Vec<[VertexId; 2]>,
     has_area: bool,
 }
 
@@ -110,7 +119,13 @@ impl Told<'_> {
                 "genus {genus}: only meshes without handles (genus 0) can be done; close the \
                  handles first"
             );
-            Reason::new(self.mesh, faces, &[], Flaw::Handles { genus }, text)
+            Reason::new(
+                self.mesh,
+                faces,
+                &surface.handle,
+                Flaw::Handles { genus },
+                text,
+            )
         });
         [border, handles, flat].into_iter().flatten().collect()
     }

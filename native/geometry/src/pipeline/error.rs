@@ -3,7 +3,9 @@
 use thiserror::Error;
 
 use super::kept::{Kept, refusal};
+use super::report::Report;
 use super::settings::{Kind, MAX_FACES, MIN_FACES, Primitive};
+use super::warning::{Warning, grave};
 use crate::mesh::VertexId;
 use crate::progress::Cancelled;
 use crate::{clean, decimate, deform, embed, flow, sphere};
@@ -92,6 +94,14 @@ pub enum Error {
         kept: Vec<Kept>,
         /// How many parts there are.
         n_parts: usize,
+    },
+    /// A strict run made a result that is not fit for use.
+    #[error("the result is not sound: {}", grave(warnings))]
+    Unsound {
+        /// All that is wrong with it.
+        warnings: Vec<Warning>,
+        /// What is told of the run.
+        report: Box<Report>,
     },
     /// The threads could not be started.
     #[error("the threads could not be started: {0}")]

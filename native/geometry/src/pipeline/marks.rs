@@ -41,13 +41,10 @@ impl Input<'_> {
     /// Whether all edges have their ends.
     pub(super) fn check_edges(&self) -> Result<(), Error> {
         let n_vertices = self.mesh.n_vertices();
-        let cuts = self.cuts.unwrap_or_default();
-        let all = [
-            ("marked", self.marked),
-            ("carried", self.carried),
-            ("cut", cuts),
-        ];
-        for (kind, edges) in all {
+        let cuts = self.cuts.unwrap_or_default().iter();
+        let cuts = cuts.map(|set| ("cut", set.as_slice()));
+        let all = [("marked", self.marked), ("carried", self.carried)];
+        for (kind, edges) in all.into_iter().chain(cuts) {
             for (edge, ends) in edges.iter().enumerate() {
                 if let Some(&vertex) = ends.iter().find(|v| v.index() >= n_vertices) {
                     return Err(Error::EdgeOutOfRange {

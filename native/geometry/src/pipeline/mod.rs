@@ -21,6 +21,7 @@ mod even;
 mod flow;
 mod flowed;
 mod frame;
+mod handle;
 mod join;
 mod kept;
 mod marks;
@@ -30,11 +31,13 @@ mod part;
 mod probe;
 mod report;
 mod rods;
+mod scored;
 mod settings;
 mod small;
 mod split;
 mod stay;
 mod verbs;
+mod warning;
 
 pub use crate::transfer::CarriedEdge;
 pub use attempt::Attempt;
@@ -47,9 +50,11 @@ pub use kept::{Flaw, Kept, Outcome, Reason};
 pub use mirror::{Mirror, Plane, Through};
 pub use origins::{Origin, Origins};
 pub use report::{Mirrored, PartReport, Reduced, Report};
+pub use scored::score;
 pub use settings::{Kind, MAX_FACES, MIN_FACES, Primitive, Settings, Style};
 pub use small::{MAX_WELD, SmallParts};
 pub use verbs::{Decimated, EmbedReport, EmbeddedParts, decimate, embed};
+pub use warning::{Fault, Warning};
 
 use glam::DVec3;
 
@@ -57,16 +62,18 @@ use crate::embed::OffsetPredictor;
 use crate::mesh::{PolygonMesh, VertexId};
 use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
-use crate::score::{self, Score};
 use crate::{clean, measure, transfer};
 use clock::Clock;
 use density::Density;
 use each::Common;
+use even::Marked;
 use frame::Prepared;
 use join::Joined;
 use marks::Marks;
+use scored::Scored;
 use split::Parts;
 use stay::{Elements, Staying};
+use warning::Made;
 
 /// The version of Orbflow.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -89,9 +96,10 @@ pub struct Input<'a> {
     pub density: Option<&'a [f64]>,
     /// Edges of the mesh that are to be found again on edges of the result, where these lie on them.
     pub carried: &'a [[VertexId; 2]],
-    /// Edges of the mesh along which data on corners is cut, as texture coordinates are along seams.
-    /// With them, none or some, the result says where each of its elements comes from.
-    pub cuts: Option<&'a [[VertexId; 2]]>,
+    /// Edges of the mesh along which data on corners is cut, as texture coordinates are along seams:
+    /// a set of them for each way in which data is cut. With sets, also without one, the result
+    /// says where each of its elements comes from.
+    pub cuts: Option<&'a [Vec<[VertexId; 2]>]>,
 }
 
 impl<'a> Input<'a> {
@@ -194,15 +202,19 @@ fn run(
     let carrying = || elements(&input, (&prepared, plane), &mut joined, stayed, &stage);
     let (mut made, carried) = clock.step("transfer", carrying)?;
     let stage = progress.part("score", 0.92, 1.0);
-    let (score, score_refused) = match settings.score() {
-        Some(wanted) => {
-            let old = parts.done_alone(given.mesh);
-            let old = old.as_ref().unwrap_or(given.mesh);
-            let scored = clock.step("score", || score::score(old, &made.mesh, &wanted, &stage));
-            told(scored)?
-        }
-        None => (None, None),
+    let lost_marks = lost_marks(&prepared, (mesh, &marked), &joined, progress)?;
+    let old = parts.done_alone(given.mesh);
+    let against = (old.as_ref().unwrap_or(given.mesh), &prepared);
+    let scored = Scored::new(against, &made.mesh, settings, (&mut clock, &stage))?;
+    let faults = Made {
+        mesh: &made.mesh,
+        parts: &joined.parts,
+        plane,
+        diagonal: prepared.frame.grow(DVec3::X).x,
+        glance: scored.glance,
+        lost_marks,
     };
+    let warnings = warning::warnings(&faults, settings, progress)?;
     staying.append(&given, &mut made);
     let report = Report {
         version: VERSION,
@@ -215,12 +227,18 @@ fn run(
         parts: joined.parts,
         kept: parts.kept,
         carried,
-        score,
-        score_refused,
+        score: scored.score,
+        score_refused: scored.refused,
+        warnings,
         steps: clock.into_steps(),
         peak_memory_mb: peak_memory_mb(),
     };
     progress.at(1.0)?;
+    if settings.strict && report.warnings.iter().any(|warning| warning.grave) {
+        let warnings = report.warnings.clone();
+        let report = Box::new(report);
+        return Err(Error::Unsound { warnings, report });
+    }
     Ok(Remeshed {
         mesh: made.mesh,
         materials: made.materials,
@@ -233,13 +251,16 @@ fn run(
     })
 }
 
-/// A result that cannot be scored is a result all the same; only a cancellation ends the run.
-fn told(scored: Result<Score, score::Error>) -> Result<(Option<Score>, Option<String>), Cancelled> {
-    match scored {
-        Ok(score) => Ok((Some(score), None)),
-        Err(score::Error::Cancelled(cancelled)) => Err(cancelled),
-        Err(error) => Ok((None, Some(error.to_string()))),
-    }
+/// The share of the marked edges that no edge lies along.
+fn lost_marks(
+    prepared: &Prepared,
+    marked: (&PolygonMesh, &[[VertexId; 2]]),
+    joined: &Joined,
+    progress: &Progress<'_>,
+) -> Result<f64, Cancelled> {
+    let marks = Marks::new(marked, &prepared.frame);
+    let marked = Marked::new(&prepared.mesh, &marks.on(&prepared.mesh));
+    marked.lost((&joined.mesh, &joined.features), progress)
 }
 
 /// What was made, with the artist's data on it, and what became of edges that were to be carried.

@@ -35,8 +35,9 @@ impl Origin {
 pub struct Origins {
     /// Of every vertex of the result.
     pub vertices: Vec<Origin>,
-    /// Of every corner of every face; those of one face lie on one side of the cuts.
-    pub corners: Vec<Origin>,
+    /// For each set of cuts those of every corner of every face; those of one face lie on one side
+    /// of the cuts.
+    pub corners: Vec<Vec<Origin>>,
     /// The face of the input under every face.
     pub faces: Vec<FaceId>,
 }
@@ -51,14 +52,18 @@ pub fn origins(
     let Some(cuts) = input.cuts else {
         return Ok(None);
     };
-    let cuts = Marks::new((input.mesh, cuts), &prepared.frame).on(&prepared.mesh);
+    let mut sets = Vec::with_capacity(cuts.len());
+    for set in cuts {
+        progress.check()?;
+        sets.push(Marks::new((input.mesh, set), &prepared.frame).on(&prepared.mesh));
+    }
     let old = (&prepared.mesh, tree);
-    let places = transfer::places(old, &cuts, result, progress)?;
+    let places = transfer::places(old, &sets, result, progress)?;
     let origin = |place: &Closest| Origin {
         corners: [0, 1, 2].map(|i| prepared.input_corner(input.mesh, place.face, i)),
         weights: place.weights,
     };
-    let origins = |places: &[Closest]| {
+    let origins = |places: &Vec<Closest>| {
         let mut origins = Vec::with_capacity(places.len());
         for chunk in places.chunks(CHUNK) {
             progress.check()?;
@@ -68,7 +73,11 @@ pub fn origins(
     };
     Ok(Some(Origins {
         vertices: origins(&places.vertices)?,
-        corners: origins(&places.corners)?,
+        corners: places
+            .corners
+            .iter()
+            .map(origins)
+            .collect::<Result<_, _>>()?,
         faces: places
             .faces
             .iter()
@@ -104,7 +113,7 @@ mod tests {
         let soup = PolygonMesh::from_faces(positions, &faces).unwrap();
         let prepared = Prepared::new(&soup, &Progress::none()).unwrap();
         let input = Input {
-            cuts: Some(&[]),
+            cuts: Some(&[Vec::new()]),
             ..Input::new(&soup)
         };
         let inside = soup.with_positions(prepared.frame.enter(soup.positions()));
@@ -112,7 +121,7 @@ mod tests {
         let found = origins(&input, (&prepared, &tree), &inside, &Progress::none());
         let found = found.unwrap().expect("cuts are given");
         assert_eq!(found.faces, soup.face_ids().collect::<Vec<_>>());
-        for (i, origin) in found.corners.iter().enumerate() {
+        for (i, origin) in found.corners[0].iter().enumerate() {
             let shares = origin.corners.iter().zip(origin.weights);
             let place = shares.map(|(&c, share)| soup.position(soup.corners()[c as usize]) * share);
             let wanted = soup.position(soup.corners()[i]);

@@ -8,6 +8,7 @@ use super::flowed::Flowed;
 use super::kept::Kept;
 use super::mirror::Plane;
 use super::settings::Settings;
+use super::warning::Warning;
 use crate::measure::Topology;
 use crate::score::Score;
 use crate::{clean, decimate, deform, embed, sphere};
@@ -39,6 +40,8 @@ pub struct Report {
     pub score: Option<Score>,
     /// Why it could not be measured.
     pub score_refused: Option<String>,
+    /// What is not as it was to be, what is grave first.
+    pub warnings: Vec<Warning>,
     /// How long each step took.
     pub steps: Vec<Step>,
     /// The most memory that the process held, in MiB; none where the system does not tell.

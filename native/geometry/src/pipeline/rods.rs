@@ -181,7 +181,10 @@ fn images(quads: &PolygonMesh, axis: usize) -> Option<Vec<VertexId>> {
         let corners: Vec<VertexId> = face.iter().rev().map(|v| images[v.index()]).collect();
         turned(&corners)
     };
-    quads.faces().all(|face| all.contains(&image(face))).then_some(images)
+    quads
+        .faces()
+        .all(|face| all.contains(&image(face)))
+        .then_some(images)
 }
 
 /// At most so many crosses along the edges of quads.
@@ -193,7 +196,10 @@ fn crosses(quads: &PolygonMesh, n: usize) -> Vec<Cross> {
         let p = [0, 1, 2, 3].map(|i| quads.position(face[i]));
         Cross {
             place: p.iter().sum::<DVec3>() / 4.0,
-            arms: [(p[1] + p[2] - p[0] - p[3]) / 4.0, (p[2] + p[3] - p[0] - p[1]) / 4.0],
+            arms: [
+                (p[1] + p[2] - p[0] - p[3]) / 4.0,
+                (p[2] + p[3] - p[0] - p[1]) / 4.0,
+            ],
         }
     };
     let step = quads.n_faces().div_ceil(n);

@@ -60,9 +60,9 @@ impl Staying {
             origins
                 .vertices
                 .extend(of_vertices.into_iter().map(Origin::of));
-            origins
-                .corners
-                .extend(of_corners.into_iter().map(Origin::of));
+            for set in &mut origins.corners {
+                set.extend(of_corners.iter().copied().map(Origin::of));
+            }
             origins.faces.extend_from_slice(&self.faces);
         }
         let carried = self.carried(input).into_iter().map(|edge| CarriedEdge {

@@ -1,6 +1,7 @@
 //! Sharp lines of the input and of the output, compared.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::statistics::harmonic;
 use super::surface::Surface;
@@ -24,15 +25,32 @@ const LEAST_SHARE: f64 = 0.75;
 const TOLERANCE: f64 = 0.005;
 /// Between two samples of a line, in diagonals.
 const SPACING: f64 = 0.001;
+/// Faces between two looks at the progress.
+const CHUNK: usize = 2048;
 /// Lines have some so many samples at most, or those of an output in other units would fill the memory.
 const MOST_SAMPLES: f64 = 1e6;
 
-/// F1 of sharp lines; none where the input has no clear ones.
-pub fn f1_pct(
+/// How much of the sharp lines of the one mesh is near those of the other.
+#[derive(Clone, Copy)]
+pub struct Found {
+    /// The share of the output's lines.
+    pub precision: f64,
+    /// The share of the input's lines.
+    pub recall: f64,
+}
+
+impl Found {
+    pub fn f1_pct(&self) -> f64 {
+        100.0 * harmonic(self.precision, self.recall)
+    }
+}
+
+/// Compares sharp lines; none where the input has no clear ones.
+pub fn found(
     input: &Surface,
     output: &Surface,
     progress: &Progress,
-) -> Result<Option<f64>, Cancelled> {
+) -> Result<Option<Found>, Cancelled> {
     let diagonal = input.diagonal();
     let wanted = SharpLines::find(input, SHARP_INPUT, SHORTEST_LINE * diagonal, progress)?;
     let is_clear = wanted.length >= LEAST_TOTAL * diagonal
@@ -43,12 +61,14 @@ pub fn f1_pct(
     let found = SharpLines::find(output, SHARP_OUTPUT, 0.0, progress)?;
     let [wanted, found] = [&wanted, &found].map(|lines| lines.samples(SPACING * diagonal));
     if found.is_empty() {
-        return Ok(Some(0.0));
+        let [precision, recall] = [0.0; 2];
+        return Ok(Some(Found { precision, recall }));
     }
     let tolerance = TOLERANCE * diagonal;
-    let precision = share_near(&found, &wanted, tolerance, progress)?;
-    let recall = share_near(&wanted, &found, tolerance, progress)?;
-    Ok(Some(100.0 * harmonic(precision, recall)))
+    Ok(Some(Found {
+        precision: share_near(&found, &wanted, tolerance, progress)?,
+        recall: share_near(&wanted, &found, tolerance, progress)?,
+    }))
 }
 
 /// The share of points that have another point within the tolerance.
@@ -133,11 +153,20 @@ fn sharp_edges(
     progress: &Progress,
 ) -> Result<Vec<usize>, Cancelled> {
     let edges = &surface.edges;
+    let faces: Vec<FaceId> = surface.mesh.face_ids().collect();
+    let of_chunk = |chunk: &[FaceId]| {
+        progress.check()?;
+        let normals = chunk.iter().map(|&face| newell_normal(surface, face));
+        Ok(normals.collect())
+    };
+    let normals = faces.par_chunks(CHUNK).map(of_chunk);
+    let normals: Vec<Vec<DVec3>> = normals.collect::<Result<_, Cancelled>>()?;
+    let normals = normals.concat();
     let mut is_sharp = vec![false; edges.len()];
     for corner in 0..edges.n_corners() {
         progress.check()?;
         if let Some(twin) = edges.twin(corner).filter(|&twin| twin > corner) {
-            let [a, b] = [corner, twin].map(|c| newell_normal(surface, FaceId(edges.face_of[c])));
+            let [a, b] = [corner, twin].map(|c| normals[edges.face_of[c] as usize]);
             let angle = angle_between(a, b).to_degrees();
             is_sharp[edges.of_corner[corner] as usize] = angle > degrees;
         }

@@ -8,17 +8,17 @@ use crate::groups::Groups;
 use crate::mesh::Id;
 use crate::progress::{Cancelled, Progress};
 
-/// Chains of edges that go straight through inner vertices of four quads.
-#[derive(Clone, Copy, PartialEq, Debug, Serialize)]
+/// Chains of edges that go straight through inner vertices of four quads; none without quads.
+#[derive(Clone, Copy, PartialEq, Debug, Default, Serialize)]
 pub struct Chains {
     /// ↑ Mean number of edges in a chain.
-    pub chain_mean: f64,
+    pub chain_mean: Option<f64>,
     /// ↑ Its median over chains.
-    pub chain_median: f64,
+    pub chain_median: Option<f64>,
     /// ↑ Its median over edges: the chain on which half of the edges lie.
-    pub chain_edge_median: f64,
+    pub chain_edge_median: Option<f64>,
     /// ↑ Share of edges on chains that close without crossing themselves.
-    pub loop_edges_pct: f64,
+    pub loop_edges_pct: Option<f64>,
 }
 
 /// Strips of quads joined across opposite edges; none without quads.
@@ -33,6 +33,9 @@ pub struct Strips {
 }
 
 pub fn chains(surface: &Surface, progress: &Progress) -> Result<Chains, Cancelled> {
+    if surface.mesh.n_quads() == 0 {
+        return Ok(Chains::default());
+    }
     let edges = &surface.edges;
     let onward = straight_on(surface);
     progress.check()?;
@@ -59,10 +62,10 @@ pub fn chains(surface: &Surface, progress: &Progress) -> Result<Chains, Cancelle
     progress.check()?;
     let of_edges: Vec<u32> = chain.iter().map(|&c| lengths[c as usize]).collect();
     Ok(Chains {
-        chain_mean: edges.len() as f64 / n as f64,
-        chain_median: median(&lengths),
-        chain_edge_median: median(&of_edges),
-        loop_edges_pct: 100.0 * share(&chain, |&c| is_loop[c as usize]),
+        chain_mean: Some(edges.len() as f64 / n as f64),
+        chain_median: Some(median(&lengths)),
+        chain_edge_median: Some(median(&of_edges)),
+        loop_edges_pct: Some(100.0 * share(&chain, |&c| is_loop[c as usize])),
     })
 }
 

@@ -1,15 +1,21 @@
 //! How good a remeshed model is, in numbers: topology, distance, shape of faces, edge flow.
 //!
 //! `↓` marks figures of which less is better, `↑` of which more is. d is the length of the diagonal
-//! of the input's bounding box, and distances are in percent of d. Polygons are cut into triangles
-//! along the shorter diagonal. Distances come from seeded samples even by area, all other figures
-//! are exact. Nothing is welded: what counts is how the faces hang together.
+//! of the input's bounding box, and distances are in percent of d. Quads are cut into triangles along
+//! the shorter diagonal that lies inside, larger polygons as a fan or, where that folds, by clipping
+//! ears. Distances come from seeded samples even by area, all other figures are exact but for the
+//! curvature of very large inputs. Nothing is welded: what counts is how the faces hang together.
+//! Whether an output hangs together as the input did is told of the input as whoever asks has cleaned it.
+//! Figures of quads are none where there are none.
 
+mod borders;
 mod crossing;
 mod distance;
 mod features;
 mod flow;
+mod glance;
 mod lines;
+mod near;
 mod shape;
 mod statistics;
 mod surface;
@@ -25,8 +31,10 @@ use crate::progress::{Cancelled, Progress};
 use crate::sparse::NotPositiveDefinite;
 use surface::Surface;
 
+pub use borders::BorderDistance;
 pub use distance::Distance;
 pub use flow::Flow;
+pub use glance::{Glance, glance};
 pub use lines::{Chains, Strips};
 pub use shape::Shape;
 
@@ -49,6 +57,25 @@ impl Default for Settings {
             target: None,
             n_samples: 100_000,
             seed: 0,
+        }
+    }
+}
+
+/// What an output is measured against.
+#[derive(Clone, Copy, Debug)]
+pub struct Reference<'a> {
+    /// The mesh that was to be rebuilt.
+    pub mesh: &'a PolygonMesh,
+    /// How it hangs together once it is cleaned; none takes it as it comes, with faces apart that
+    /// have vertices of their own in the same place.
+    pub topology: Option<Topology>,
+}
+
+impl<'a> From<&'a PolygonMesh> for Reference<'a> {
+    fn from(mesh: &'a PolygonMesh) -> Self {
+        Self {
+            mesh,
+            topology: None,
         }
     }
 }
@@ -105,7 +132,7 @@ pub struct Score {
     pub borders: usize,
     /// Handles; none unless manifold.
     pub genus: Option<i64>,
-    /// The five above are the input's.
+    /// The five above are the input's, once that is cleaned.
     pub same_topology: bool,
     /// ↓ Pairs of triangles that cross; neighbours across an edge are not tested.
     pub self_intersections: usize,
@@ -128,19 +155,25 @@ pub struct Score {
     /// How the quads line up.
     #[serde(flatten)]
     pub strips: Strips,
+    /// How far border lines are apart.
+    #[serde(flatten)]
+    pub border_distance: BorderDistance,
     /// ↑ F1 at 0.5 % of points on sharp lines of input and output; none without clear lines.
     pub feature_f1_pct: Option<f64>,
     /// ↓ Mean distance of mirrored vertices to the nearest vertex / mean edge length, over the
     /// axes in which the input is symmetric; none if there is none. Random vertices have 0.38.
     pub asymmetry: Option<f64>,
+    /// What warnings are made of.
+    #[serde(skip)]
+    pub glance: Glance,
 }
 
 /// Measures how good `output` is as a remeshing of `input`.
 ///
 /// # Errors
 /// When one of them has no area, a setting is 0, or cancelled.
-pub fn score(
-    input: &PolygonMesh,
+pub fn score<'a>(
+    input: impl Into<Reference<'a>>,
     output: &PolygonMesh,
     settings: &Settings,
     progress: &Progress,
@@ -151,17 +184,22 @@ pub fn score(
     if settings.target == Some(0) {
         return Err(Error::NoTarget);
     }
-    let n_faces = input.n_faces();
-    let input = Surface::new(input, &progress.part("", 0.0, 0.1))?;
+    let Reference { mesh, topology } = input.into();
+    let n_faces = mesh.n_faces();
+    let input = Surface::new(mesh, &progress.part("", 0.0, 0.1))?;
     let input = input.ok_or(Error::FlatInput { n_faces })?;
     let n_faces = output.n_faces();
     let output = Surface::new(output, &progress.part("", 0.1, 0.15))?;
     let output = output.ok_or(Error::FlatOutput { n_faces })?;
-    measure(&input, &output, settings, progress)
+    let topology = match topology {
+        Some(topology) => topology,
+        None => topology_of(input.mesh, &input.edges, progress)?,
+    };
+    measure((&input, &topology), &output, settings, progress)
 }
 
 fn measure(
-    input: &Surface,
+    (input, topology): (&Surface, &Topology),
     output: &Surface,
     settings: &Settings,
     progress: &Progress,
@@ -170,11 +208,11 @@ fn measure(
     let distance = distance::distance(input, output, settings, &progress.part("", 0.2, 0.7))?;
     let flow = flow::flow(input, output, settings.target, &progress.part("", 0.7, 0.9))?;
     progress.at(0.9)?;
-    let feature_f1_pct = features::f1_pct(input, output, progress)?;
+    let found = features::found(input, output, progress)?;
     progress.at(0.93)?;
     let own = topology_of(output.mesh, &output.edges, progress)?;
     progress.at(0.95)?;
-    let other = topology_of(input.mesh, &input.edges, progress)?;
+    let border_distance = borders::borders(input, output, progress)?;
     progress.at(0.97)?;
     let asymmetry = symmetry::asymmetry(input, output, settings.seed, progress)?;
     progress.at(0.98)?;
@@ -198,7 +236,7 @@ fn measure(
         components: own.n_components,
         borders: own.n_borders,
         genus: own.genus,
-        same_topology: is_same(&own, &other),
+        same_topology: own.is_alike(topology),
         self_intersections: crossing.len(),
         self_intersecting_pct: crossing::involved_pct(&crossing, triangles),
         chamfer_at_target_pct: settings.target.map(|t| distance.chamfer_pct * of_target(t)),
@@ -207,14 +245,11 @@ fn measure(
         flow,
         chains,
         strips,
-        feature_f1_pct,
+        border_distance,
+        feature_f1_pct: found.map(|found| found.f1_pct()),
         asymmetry,
+        glance: Glance::new(&distance, found.as_ref()),
     })
-}
-
-fn is_same(a: &Topology, b: &Topology) -> bool {
-    let figures = |t: &Topology| (t.closed, t.manifold, t.n_components, t.n_borders, t.genus);
-    figures(a) == figures(b)
 }
 
 #[cfg(test)]

@@ -17,6 +17,8 @@ pub struct Shape {
     pub edge_mean: f64,
     /// ↓ Standard deviation / mean of edge lengths.
     pub edge_cv: f64,
+    /// ↓ Quads with a scaled Jacobian of 0 or less.
+    pub inverted: Option<usize>,
     /// ↑ The least scaled Jacobian of a quad's corners: 1 in a rectangle, below 0 in a fold.
     pub jacobian_min: Option<f64>,
     /// ↑ The 1 % quantile over quads.
@@ -60,6 +62,7 @@ pub fn shape(surface: &Surface, progress: &Progress) -> Result<Shape, Cancelled>
     Ok(Shape {
         edge_mean: mean_length,
         edge_cv: mean(&squares).sqrt() / mean_length.max(1e-300),
+        inverted: any(&jacobians).map(|all| all.iter().filter(|&&j| j <= 0.0).count()),
         jacobian_min: jacobians.iter().copied().min_by(f64::total_cmp),
         jacobian_p01: any(&jacobians).map(|all| quantile(all.to_vec(), 0.01)),
         jacobian_mean: any(&jacobians).map(mean),
@@ -140,6 +143,15 @@ mod tests {
         shape(&surface, &progress).unwrap()
     }
 
+    fn bent() -> Shape {
+        of_quad([
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [0.0, 1.0, 1e-6],
+        ])
+    }
+
     fn is_near(value: Option<f64>, wanted: f64) -> bool {
         value.is_some_and(|value| (value - wanted).abs() < 1e-9)
     }
@@ -174,14 +186,10 @@ mod tests {
             [0.9, 0.1, 0.0],
         ]);
         assert!(folded.jacobian_min.is_some_and(|j| j < 0.0));
-        let bent = of_quad([
-            [0.0, 0.0, 0.0],
-            [1.0, 0.0, 0.0],
-            [1.0, 1.0, 0.0],
-            [0.0, 1.0, 1e-6],
-        ]);
+        assert_eq!((folded.inverted, bent().inverted), (Some(1), Some(0)));
         assert!(
-            bent.warp_mean
+            bent()
+                .warp_mean
                 .is_some_and(|w| (w / (2f64.sqrt() * 1e-6f64.to_degrees()) - 1.0).abs() < 1e-6)
         );
     }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::measure::{PolygonEdges, area_vector};
+use crate::measure::{PolygonEdges, area_vector, cut_polygon};
 use crate::mesh::{Id, PolygonMesh, VertexId, bounds};
 use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
@@ -35,7 +35,10 @@ impl<'a> Surface<'a> {
     /// None if no face has an area.
     pub fn new(mesh: &'a PolygonMesh, progress: &Progress) -> Result<Option<Self>, Cancelled> {
         progress.at(0.0)?;
-        let triangles: Vec<[VertexId; 3]> = mesh.faces().flat_map(|face| cut(mesh, face)).collect();
+        let mut triangles = Vec::with_capacity(mesh.corners().len());
+        for face in mesh.faces() {
+            cut_polygon(mesh, face, &mut triangles);
+        }
         progress.check()?;
         let corners: Vec<[DVec3; 3]> = triangles
             .iter()
@@ -121,18 +124,6 @@ fn used_positions(mesh: &PolygonMesh) -> Vec<DVec3> {
     all.filter(|(_, used)| *used).map(|(&p, _)| p).collect()
 }
 
-/// The triangles of a polygon: a quad along its shorter diagonal, others as a fan.
-fn cut<'a>(
-    mesh: &PolygonMesh,
-    face: &'a [VertexId],
-) -> impl Iterator<Item = [VertexId; 3]> + use<'a> {
-    let n = face.len();
-    let distance = |i: usize, j: usize| mesh.position(face[i]).distance(mesh.position(face[j]));
-    let first = usize::from(n == 4 && distance(0, 2) > distance(1, 3));
-    let at = move |i: usize| face[(first + i) % n];
-    (1..n - 1).map(move |i| [at(0), at(i), at(i + 1)])
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -150,14 +141,5 @@ mod tests {
         let samples = surface(&mesh).sample(400, 1);
         let count = |t| samples.iter().filter(|s| s.triangle == t).count();
         assert_eq!([0, 1, 2, 3].map(count), [0, 100, 300, 0]);
-    }
-
-    #[test]
-    fn a_quad_is_cut_along_its_shorter_diagonal() {
-        let positions = [[0.0, 0.0], [1.0, -0.2], [3.0, 0.0], [1.0, 0.2]];
-        let positions = positions.map(|[x, y]| DVec3::new(x, y, 0.0)).to_vec();
-        let mesh = PolygonMesh::from_faces(positions, &[[0, 1, 2, 3]]).unwrap();
-        let triangles = surface(&mesh).triangles;
-        assert_eq!(triangles, [[1, 2, 3], [1, 3, 0]].map(|t| t.map(VertexId)));
     }
 }

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::near::distances;
 use super::statistics::{mean, quantile};
 use super::surface::Surface;
 use crate::nearest::Bvh;
@@ -29,21 +30,10 @@ pub fn asymmetry(
     let mut far = Vec::new();
     for axis in axes {
         let mirrored = output.used.iter().map(|&p| mirrored(input, p, axis));
-        far.push(mean(&distances(&tree, mirrored, progress)?));
+        let mirrored: Vec<DVec3> = mirrored.collect();
+        far.push(mean(&distances(&tree, &mirrored, progress)?));
     }
     Ok(Some(mean(&far) / mean(&output.edge_lengths).max(1e-300)))
-}
-
-fn distances(
-    tree: &Bvh,
-    points: impl Iterator<Item = DVec3>,
-    progress: &Progress,
-) -> Result<Vec<f64>, Cancelled> {
-    let far = |p| {
-        progress.check()?;
-        Ok(tree.closest(p).distance_squared.sqrt())
-    };
-    points.map(far).collect()
 }
 
 /// The axes along which the surface, mirrored at the middle of its box, comes to lie on itself.
@@ -52,7 +42,7 @@ fn mirror_axes(surface: &Surface, seed: u64, progress: &Progress) -> Result<Vec<
     let mut axes = Vec::new();
     for axis in 0..3 {
         let points = samples.iter().map(|s| mirrored(surface, s.position, axis));
-        let far = distances(&surface.tree, points, progress)?;
+        let far = distances(&surface.tree, &points.collect::<Vec<_>>(), progress)?;
         if quantile(far, SHARE) < DEVIATION * surface.diagonal() {
             axes.push(axis);
         }

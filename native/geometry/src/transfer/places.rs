@@ -20,6 +20,10 @@ const VERTICES: usize = 2048;
 /// above, only time grows.
 const REACH: f64 = 1.25;
 
+/// Cosine of the angle to the face's normal from which on a triangle is of the other side: 120°.
+/// Below, the way round a thin limb leads to the far side of a cut; above, a face that lies across a
+/// sharp edge misses what is behind the edge.
+const BEHIND: f64 = -0.5;
 /// A triangle farther from the middle must be nearer to a corner by more than this share of the
 /// squared reach.
 const CLEARLY_NEARER: f64 = 1e-12;
@@ -29,8 +33,9 @@ const CLEARLY_NEARER: f64 = 1e-12;
 pub struct Places {
     /// Of every vertex.
     pub vertices: Vec<Closest>,
-    /// Of every corner of every face: on the same side of the cuts as the middle of the face.
-    pub corners: Vec<Closest>,
+    /// For each set of cuts, of every corner of every face: on the same side of the cuts as the
+    /// middle of the face.
+    pub corners: Vec<Vec<Closest>>,
     /// The triangle under the middle of every face.
     pub faces: Vec<FaceId>,
 }
@@ -38,22 +43,25 @@ pub struct Places {
 /// Finds the places of an output on the surface that it was made of.
 ///
 /// Data that is cut along edges, as texture coordinates are along seams, is taken at the corners of
-/// faces, each from one side of the cuts alone. `cuts` has both halves of each such edge. `tree` is
-/// that of the mesh. Without an old face there are no places. Costs a walk over the triangles below
-/// every face.
+/// faces, each from one side of the cuts alone. `cuts` has sets of them, each with both halves of
+/// each such edge. `tree` is that of the mesh. Without an old face there are no places. Costs a walk
+/// over the triangles below every face for every set.
 ///
 /// # Errors
 /// When cancelled.
 pub fn places(
     (old, tree): (&TriangleMesh, &Bvh),
-    cuts: &HalfedgeMap<bool>,
+    cuts: &[HalfedgeMap<bool>],
     output: &PolygonMesh,
     progress: &Progress,
 ) -> Result<Places, Cancelled> {
-    let Some(source) = Source::new(tree) else {
-        return Ok(Places::default());
+    let mut places = Places {
+        corners: vec![Vec::new(); cuts.len()],
+        ..Places::default()
     };
-    let mut places = Places::default();
+    let Some(source) = Source::new(tree) else {
+        return Ok(places);
+    };
     let mut normals = vec![DVec3::ZERO; output.n_vertices()];
     let mut reach = vec![0.0f64; output.n_vertices()];
     let faces: Vec<FaceId> = output.face_ids().collect();
@@ -61,17 +69,21 @@ pub fn places(
         progress.at(places.faces.len() as f64 / faces.len() as f64)?;
         let found = chunk.par_iter().map(|&id| {
             let face = Face::new(output, id);
-            let places = face.places(source, old, cuts);
-            (face, places)
+            let under = source.at(face.middle, face.normal, face.radius);
+            let corners = cuts.iter().map(|set| face.places(under, old, set));
+            let corners: Vec<_> = corners.collect();
+            (face, under.face, corners)
         });
         let found: Vec<_> = found.collect();
-        for (&id, (face, (under, corners))) in chunk.iter().zip(found) {
+        for (&id, (face, under, corners)) in chunk.iter().zip(found) {
             for v in output.face(id) {
                 normals[v.index()] += face.normal;
                 reach[v.index()] = reach[v.index()].max(face.radius);
             }
             places.faces.push(under);
-            places.corners.extend(corners);
+            for (all, corners) in places.corners.iter_mut().zip(corners) {
+                all.extend(corners);
+            }
         }
     }
     let vertices: Vec<_> = output
@@ -115,14 +127,8 @@ impl Face {
         }
     }
 
-    /// The triangle under the middle, and the places of the corners.
-    fn places(
-        &self,
-        source: Source,
-        old: &TriangleMesh,
-        cuts: &HalfedgeMap<bool>,
-    ) -> (FaceId, Vec<Closest>) {
-        let under = source.at(self.middle, self.normal, self.radius);
+    /// The places of the corners, as seen from the one under the middle.
+    fn places(&self, under: Closest, old: &TriangleMesh, cuts: &HalfedgeMap<bool>) -> Vec<Closest> {
         let patch = self.patch(under.face, old, cuts);
         // On an edge both sides are as near but for rounding; the first is the nearer to the middle.
         let clearly = CLEARLY_NEARER * self.radius.powi(2);
@@ -137,15 +143,20 @@ impl Face {
             let on = |&face: &FaceId| closest_on_triangle(corner, old.triangle(face)).of(face);
             patch.iter().map(on).reduce(nearer).unwrap_or(under)
         };
-        (under.face, self.corners.iter().map(place).collect())
+        self.corners.iter().map(place).collect()
     }
 
-    /// The triangles around the one under the middle that can be reached without crossing a cut, in
-    /// the order of the steps from it.
+    /// The triangles around the one under the middle that can be reached without crossing a cut or
+    /// going behind the face, in the order of the steps from it.
     fn patch(&self, under: FaceId, old: &TriangleMesh, cuts: &HalfedgeMap<bool>) -> Vec<FaceId> {
         let reach = (REACH * self.radius).powi(2);
         let is_near =
             |face| closest_on_triangle(self.middle, old.triangle(face)).distance_squared <= reach;
+        let is_behind = |face| {
+            let [a, b, c] = old.triangle(face);
+            let normal = (b - a).cross(c - a);
+            normal.dot(self.normal) < BEHIND * normal.length() * self.normal.length()
+        };
         let mut seen = HashSet::from([under]);
         let mut patch = vec![under];
         let mut n_done = 0;
@@ -155,7 +166,7 @@ impl Face {
             let ways = [first, first.next(), first.prev()].into_iter();
             let beyond = ways.filter(|&h| !cuts[h]).filter_map(|h| old.twin(h));
             for next in beyond.map(HalfedgeId::face) {
-                if seen.insert(next) && is_near(next) {
+                if seen.insert(next) && is_near(next) && !is_behind(next) {
                     patch.push(next);
                 }
             }
@@ -169,7 +180,7 @@ mod tests {
     use super::*;
     use crate::shapes;
 
-    fn found(old: &TriangleMesh, cuts: &HalfedgeMap<bool>, new: &TriangleMesh) -> Places {
+    fn found(old: &TriangleMesh, cuts: &[HalfedgeMap<bool>], new: &TriangleMesh) -> Places {
         let output = shapes::polygons(new);
         let tree = Bvh::of_mesh(old);
         places((old, &tree), cuts, &output, &Progress::none()).unwrap()
@@ -182,10 +193,10 @@ mod tests {
     #[test]
     fn a_mesh_finds_itself() {
         for (name, mesh) in shapes::closed(6) {
-            let places = found(&mesh, &uncut(&mesh), &mesh);
+            let places = found(&mesh, &[uncut(&mesh)], &mesh);
             assert_eq!(places.faces, mesh.face_ids().collect::<Vec<_>>(), "{name}");
             let corners = mesh.face_ids().flat_map(|f| mesh.triangle(f));
-            for (place, corner) in places.corners.iter().zip(corners) {
+            for (place, corner) in places.corners[0].iter().zip(corners) {
                 assert!(place.position.distance(corner) < 1e-9, "{name}");
             }
             for (place, &p) in places.vertices.iter().zip(mesh.positions()) {
@@ -204,15 +215,48 @@ mod tests {
             is_right(&fine, FaceId::from_index(h.face().index())) != is_right(&fine, twin.face())
         };
         let cuts: HalfedgeMap<bool> = fine.halfedge_ids().map(cut).collect();
-        let places = found(&fine, &cuts, &coarse);
+        // Data that is not cut there is taken across.
+        let places = found(&fine, &[cuts, uncut(&fine)], &coarse);
         let mut n_across = 0;
-        for (i, place) in places.corners.iter().enumerate() {
+        for (i, [cut, uncut]) in places.corners[0]
+            .iter()
+            .zip(&places.corners[1])
+            .map(<[_; 2]>::from)
+            .enumerate()
+        {
             let side = is_right(&fine, places.faces[i / 3]);
-            assert_eq!(is_right(&fine, place.face), side);
+            assert_eq!(is_right(&fine, cut.face), side);
             let corner = coarse.triangle(FaceId::from_index(i / 3))[i % 3];
-            n_across += usize::from((corner.x > 0.05) != side && corner.x.abs() > 0.05);
+            let is_across = (corner.x > 0.05) != side && corner.x.abs() > 0.05;
+            assert!(!is_across || is_right(&fine, uncut.face) != side);
+            n_across += usize::from(is_across);
         }
         assert!(n_across > 10, "no face lies across the cut");
+    }
+
+    #[test]
+    fn no_way_leads_round_a_limb_to_the_far_side_of_a_cut() {
+        let round = |p: DVec3| {
+            let (flat, z) = (p.with_z(0.0), 4.0 * p.z);
+            let radius = p.x.abs().max(p.y.abs());
+            (flat.normalize_or_zero() * radius).with_z(z)
+        };
+        let limb = shapes::mapped_cube(8, round);
+        let on_seam = |p: DVec3| p.y.abs() < 1e-9 && p.x > 0.9;
+        let cut = |h| [limb.origin(h), limb.target(h)].map(|v| limb.position(v));
+        let cut = |h| cut(h).into_iter().all(on_seam);
+        let cuts: HalfedgeMap<bool> = limb.halfedge_ids().map(cut).collect();
+        // Three of these would go round the limb; the cut lies near the far side of this one.
+        let [low, high] = [DVec3::new(-0.32, -0.95, 0.0), DVec3::new(0.98, 0.2, 0.0)];
+        let corners = [(low, -1.5), (high, -1.5), (high, 1.5), (low, 1.5)];
+        let corners = corners.map(|(flat, z)| flat.with_z(z));
+        let face = PolygonMesh::from_faces(corners.to_vec(), &[[0, 1, 2, 3]]).unwrap();
+        let tree = Bvh::of_mesh(&limb);
+        let places = places((&limb, &tree), &[cuts], &face, &Progress::none()).unwrap();
+        for place in &places.corners[0] {
+            let of = limb.triangle(place.face).iter().sum::<DVec3>();
+            assert!(of.y < 0.0, "{} is beyond the cut", place.position);
+        }
     }
 
     #[test]
@@ -221,10 +265,14 @@ mod tests {
         let old = TriangleMesh::new(Vec::new(), Vec::new()).unwrap();
         let nothing = places(
             (&old, &Bvh::new(&[])),
-            &uncut(&old),
+            &[uncut(&old)],
             &output,
             &Progress::none(),
         );
-        assert_eq!(nothing, Ok(Places::default()));
+        let wanted = Places {
+            corners: vec![Vec::new()],
+            ..Places::default()
+        };
+        assert_eq!(nothing, Ok(wanted));
     }
 }

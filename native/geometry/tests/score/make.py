@@ -33,7 +33,8 @@ def main() -> None:
 
 def measured(source: Path, output: Path, target: int) -> dict[str, float | None]:
     """Returns what the quality tool prints."""
-    command = [sys.executable, "-m", "quality", source, output, "--json", "--target", str(target)]
+    command = [sys.executable, "-m", "quality", source, output, "--json", "--more"]
+    command += ["--target", str(target)]
     done = subprocess.run(command, cwd=sys.argv[1], check=True, capture_output=True, text=True)
     result = json.loads(done.stdout)
     return {key: value for key, value in result.items() if key not in ("input", "output")}
@@ -153,6 +154,16 @@ def broken() -> Mesh:
     return np.concatenate([points, more, [[2.0, 2.0, 2.0]]]), faces
 
 
+def letter(whole: bool) -> Mesh:
+    """Returns a thick letter U whose front and back are one concave polygon each, or cut up."""
+    outline = [(0, 0), (3, 0), (3, 3), (2, 3.5), (2, 1), (1, 1), (1, 3), (0, 3)]
+    points = np.array([(x, y, z) for z in (0, 1) for x, y in outline])
+    faces = [[i, (i + 1) % 8, (i + 1) % 8 + 8, i + 8] for i in range(8)]
+    pieces = [[*range(8)]] if whole else [[0, 5, 6, 7], [0, 1, 4, 5], [1, 2, 3, 4]]
+    front = [[i + 8 for i in piece] for piece in pieces]
+    return points, faces + front + [piece[::-1] for piece in pieces]
+
+
 PAIRS = {
     "01_lumpy": (lambda: triangulated(cube(16, lumpy)), lambda: cube(7, lumpy), 300),
     "02_sharp": (lambda: cube(8, np.array), lambda: cube(4, jittered), 100),
@@ -160,6 +171,7 @@ PAIRS = {
     "04_open": (lambda: triangulated(tube(24, 20)), mixed, 80),
     "05_broken": (lambda: cube(8, lumpy), broken, 250),
     "06_triangles": (lambda: cube(12, lumpy), lambda: triangulated(cube(6, lumpy)), 200),
+    "07_letter": (lambda: letter(whole=False), lambda: letter(whole=True), 20),
 }
 
 if __name__ == "__main__":

@@ -30,24 +30,23 @@ struct Cap {
 
 impl Ball {
     /// Rings one after the other, closed by rectangles of `cap` quads; `tips` are the ends' places.
-    pub fn new(
-        rings: &[Ring],
-        cap: [usize; 2],
-        tips: [DVec3; 2],
-        mirror: Option<usize>,
-    ) -> Self {
+    pub fn new(rings: &[Ring], cap: [usize; 2], tips: [DVec3; 2], mirror: Option<usize>) -> Self {
         let n = rings[0].points.len();
         let last = rings.len() - 1;
         let mut ball = Self {
             quads: Vec::new(),
-            positions: rings.iter().flat_map(|ring| ring.points.iter().copied()).collect(),
+            positions: rings
+                .iter()
+                .flat_map(|ring| ring.points.iter().copied())
+                .collect(),
             sphere: Vec::new(),
             on_lines: Vec::new(),
         };
         for i in 0..=last {
             let share = i as f64 / last as f64;
             let from_pole = CAP + share * (std::f64::consts::PI - 2.0 * CAP);
-            ball.sphere.extend((0..n).map(|j| latitude(j as f64 / n as f64, from_pole)));
+            ball.sphere
+                .extend((0..n).map(|j| latitude(j as f64 / n as f64, from_pole)));
         }
         ball.sides(rings);
         let offset = offset(&rings[0], cap, mirror);
@@ -103,8 +102,10 @@ impl Ball {
                     let edge = between(&ring.points, at);
                     // A dome, which a flat end is without a rise.
                     let up = (1.0 - share * share).sqrt();
-                    self.positions.push(middle + (edge - middle) * share + rise * up);
-                    self.sphere.push(on_cap((share, at / n as f64), n, cap.is_high));
+                    self.positions
+                        .push(middle + (edge - middle) * share + rise * up);
+                    self.sphere
+                        .push(on_cap((share, at / n as f64), n, cap.is_high));
                     self.positions.len() as u32 - 1
                 };
             }
@@ -159,7 +160,11 @@ fn latitude(share: f64, from_pole: f64) -> DVec3 {
 
 /// A point of a cap: at a share of the way from the pole to a point of the ring's chords.
 fn on_cap((share, turn): (f64, f64), n: usize, is_high: bool) -> DVec3 {
-    let from_pole = if is_high { std::f64::consts::PI - CAP } else { CAP };
+    let from_pole = if is_high {
+        std::f64::consts::PI - CAP
+    } else {
+        CAP
+    };
     let at = turn * n as f64;
     let [p, q] = [at.floor(), at.floor() + 1.0].map(|i| latitude(i / n as f64, from_pole));
     let edge = p.lerp(q, at - at.floor());

@@ -197,7 +197,11 @@ fn chains(
         *span = [span[0].min(at), span[1].max(at)];
     }
     let is_whole = |span: &[f64; 2]| span[0] < low + missed && span[1] > high - missed;
-    let mut whole: Vec<usize> = reach.iter().filter(|r| is_whole(r.1)).map(|r| *r.0).collect();
+    let mut whole: Vec<usize> = reach
+        .iter()
+        .filter(|r| is_whole(r.1))
+        .map(|r| *r.0)
+        .collect();
     whole.sort_unstable();
     let line = |h: HalfedgeId| {
         let root = groups.root(h.0 as usize);

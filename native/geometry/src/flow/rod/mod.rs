@@ -167,7 +167,11 @@ pub fn rod(
     let plan = Plan::new(&profile, &lines, crossed.as_ref(), &wishes);
     let plan = plan.ok_or(RodError::TooFew { n_quads })?;
     progress.at(0.8)?;
-    let order: Vec<usize> = crossed.iter().flat_map(|s| &s.crossed).map(|c| c.0).collect();
+    let order: Vec<usize> = crossed
+        .iter()
+        .flat_map(|s| &s.crossed)
+        .map(|c| c.0)
+        .collect();
     let rings = Rings {
         levels: &levels,
         profile: &profile,

@@ -81,7 +81,11 @@ impl Plan {
 
 /// How far it is from one line along the rod to the next in a section.
 pub(super) fn gaps(section: &Section) -> Vec<f64> {
-    let at: Vec<f64> = section.crossed.iter().map(|c| section.at_corner(c.1)).collect();
+    let at: Vec<f64> = section
+        .crossed
+        .iter()
+        .map(|c| section.at_corner(c.1))
+        .collect();
     let n = at.len();
     let gap = |i: usize| {
         if i + 1 < n {
@@ -126,12 +130,7 @@ fn n_rings(n: usize, [a, b]: [usize; 2], n_quads: usize) -> Option<usize> {
     (steps >= 2).then_some(steps + 1)
 }
 
-fn cost(
-    profile: &Profile,
-    (n, gaps): (usize, &[f64]),
-    shares: &[usize],
-    n_quads: usize,
-) -> f64 {
+fn cost(profile: &Profile, (n, gaps): (usize, &[f64]), shares: &[usize], n_quads: usize) -> f64 {
     let girth = profile.area() / profile.length();
     let even = girth / (profile.area() / n_quads as f64).sqrt();
     let long = 2.0 * ln(n as f64 / even).abs();
@@ -182,19 +181,18 @@ fn stops(
 }
 
 /// The first and the last ring, and those on lines round the rod that are far enough apart.
-fn fixed(
-    profile: &Profile,
-    lines: &Lines,
-    (n, cap): (usize, [usize; 2]),
-    step: f64,
-) -> Vec<Stop> {
+fn fixed(profile: &Profile, lines: &Lines, (n, cap): (usize, [usize; 2]), step: f64) -> Vec<Stop> {
     let length = profile.length();
     // An end without a rim is closed by quads as large as those round the rod.
     let wide = profile.area() / length / n as f64;
     let size = (cap[0] * cap[1]) as f64 * wide * wide;
     let open = |along: f64| Stop { along, round: None };
     let low = open(profile.along_area(size).min(0.5 * step));
-    let high = open(profile.along_area(profile.area() - size).max(length - 0.5 * step));
+    let high = open(
+        profile
+            .along_area(profile.area() - size)
+            .max(length - 0.5 * step),
+    );
     let n_round = lines.round.len();
     let on = |i: usize| Stop {
         along: lines.round[i].0,

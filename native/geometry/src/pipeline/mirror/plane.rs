@@ -65,10 +65,12 @@ pub struct Plane {
     pub at: f64,
     /// Whether the mesh was its own image in it; if not, it is made so from the positive side.
     pub was_symmetric: bool,
+    /// How far its farthest point lies from the mesh once it is mirrored, in % of the diagonal.
+    pub off_pct: f64,
 }
 
 impl Plane {
-    fn new(frame: &Frame, (axis, at): (usize, f64), through: Through, was_symmetric: bool) -> Self {
+    fn new(frame: &Frame, (axis, at): (usize, f64), through: Through, off: Off) -> Self {
         let at = match through {
             Through::Origin => 0.0,
             Through::Middle => frame.leave(&[DVec3::AXES[axis] * at])[0][axis],
@@ -77,8 +79,24 @@ impl Plane {
             axis,
             through,
             at,
-            was_symmetric,
+            was_symmetric: off.is_symmetric(),
+            off_pct: 100.0 * off.most,
         }
+    }
+}
+
+/// How far a mesh in the frame of work, mirrored, lies from itself.
+#[derive(Clone, Copy, Default)]
+struct Off {
+    mean: f64,
+    most: f64,
+    /// The share of its area that lies farther than symmetric models do.
+    beside: f64,
+}
+
+impl Off {
+    fn is_symmetric(self) -> bool {
+        self.most <= MOST_DEVIATION && self.beside <= SHARE
     }
 }
 
@@ -150,7 +168,7 @@ fn exact(
         if has_image_vertices(mesh, &tree, (axis, at), progress)?
             && data_is_symmetric((input, frame), (axis, at), progress)?
         {
-            return Ok(Some(Plane::new(frame, (axis, at), through, true)));
+            return Ok(Some(Plane::new(frame, (axis, at), through, Off::default())));
         }
     }
     Ok(None)
@@ -166,39 +184,47 @@ fn named(
 ) -> Result<Plane, Cancelled> {
     let [low, high] = bounds(mesh.positions());
     let tree = Bvh::build_of_mesh(mesh, progress)?;
-    let planes = planes([low, high], frame, axis);
-    let mut found: Option<(f64, Plane)> = None;
-    for (through, at) in planes {
-        let is_far = (low[axis] + high[axis] - 2.0 * at).abs() > MOST_DEVIATION;
-        let deviation = if is_far {
-            None
-        } else {
-            deviation(mesh, &tree, (axis, at), progress)?
-        };
-        let is_better = |deviation: &f64| found.is_none_or(|f| *deviation < CLEARLY * f.0);
-        if let Some(deviation) = deviation.filter(is_better) {
-            found = Some((deviation, Plane::new(frame, (axis, at), through, true)));
-        }
+    let [origin, middle] = planes([low, high], frame, axis);
+    let measured = |(through, at)| {
+        let off = off(mesh, &tree, (axis, at), progress)?;
+        Ok((off, Plane::new(frame, (axis, at), through, off)))
+    };
+    let (off_middle, in_middle) = measured(middle)?;
+    if origin.1 <= low[axis] || origin.1 >= high[axis] {
+        return Ok(in_middle);
     }
-    let cuts = |at: f64| low[axis] < at && at < high[axis];
-    let (through, at) = planes[usize::from(!cuts(planes[0].1))];
-    let made = || Plane::new(frame, (axis, at), through, false);
-    Ok(found.map_or_else(made, |(_, plane)| plane))
+    let (off_origin, in_origin) = measured(origin)?;
+    // A mesh that is its own image in one of the two is not made so in the other.
+    let is_only = off_middle.is_symmetric() && !off_origin.is_symmetric();
+    let is_clearly_better = off_middle.mean < CLEARLY * off_origin.mean;
+    let takes_middle = match off_origin.is_symmetric() == off_middle.is_symmetric() {
+        true => is_clearly_better,
+        false => is_only,
+    };
+    Ok(if takes_middle { in_middle } else { in_origin })
 }
 
-/// How far the image of a mesh in the frame of work is from it in the mean, if it is its own image
-/// in a plane.
-pub fn deviation(
+/// Whether a mesh in the frame of work is its own image in a plane.
+pub fn is_symmetric(
+    mesh: &TriangleMesh,
+    tree: &Bvh,
+    plane: (usize, f64),
+    progress: &Progress<'_>,
+) -> Result<bool, Cancelled> {
+    Ok(off(mesh, tree, plane, progress)?.is_symmetric())
+}
+
+fn off(
     mesh: &TriangleMesh,
     tree: &Bvh,
     (axis, at): (usize, f64),
     progress: &Progress<'_>,
-) -> Result<Option<f64>, Cancelled> {
+) -> Result<Off, Cancelled> {
     let points = Bvh::build_of_points(mesh.positions(), progress)?;
     if has_image_vertices(mesh, &points, (axis, at), progress)? {
-        return Ok(Some(0.0));
+        return Ok(Off::default());
     }
-    let [mut all, mut beside, mut sum] = [0.0; 3];
+    let (mut off, mut all) = (Off::default(), 0.0);
     for face in mesh
         .face_ids()
         .step_by((4 * mesh.n_faces()).div_ceil(N_PROBES))
@@ -211,15 +237,15 @@ pub fn deviation(
         let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
         for point in [middle, corners[0], corners[1], corners[2]] {
             let distance = tree.closest(image(point, axis, at)).distance_squared.sqrt();
-            if distance > MOST_DEVIATION {
-                return Ok(None);
-            }
             all += area;
-            sum += area * distance;
-            beside += if distance > DEVIATION { area } else { 0.0 };
+            off.mean += area * distance;
+            off.most = off.most.max(distance);
+            off.beside += if distance > DEVIATION { area } else { 0.0 };
         }
     }
-    Ok((beside <= SHARE * all).then_some(sum / all.max(f64::MIN_POSITIVE)))
+    let all = f64::max(all, f64::MIN_POSITIVE);
+    (off.mean, off.beside) = (off.mean / all, off.beside / all);
+    Ok(off)
 }
 
 /// Whether the image of every vertex is a vertex, of which there is a tree: quads cut into

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::plane::{Plane, deviation};
+use super::plane::{Plane, is_symmetric};
 use crate::measure::total_area;
 use crate::mesh::{PolygonMesh, TriangleMesh, bounds};
 use crate::mirror::mirrored;
@@ -48,7 +48,7 @@ pub fn roles(
         roles.push(if own.is_across() {
             let is_whole = !plane.was_symmetric || parts.len() == 1 || {
                 let tree = Bvh::build_of_mesh(part, progress)?;
-                deviation(part, &tree, (plane.axis, 0.0), progress)?.is_some()
+                is_symmetric(part, &tree, (plane.axis, 0.0), progress)?
             };
             if is_whole {
                 Role::Whole

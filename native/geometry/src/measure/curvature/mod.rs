@@ -4,14 +4,20 @@
 //! its edges (Rusinkiewicz 2004). As a symmetric tensor of space it is averaged to vertices by area
 //! and smoothed by heat: two implicit steps of together scale² / 2, about a Gaussian of deviation
 //! `scale`. Heat flows on the surface, so the average never jumps across a thin wall, and a detail
-//! much smaller than `scale` has no say.
+//! much smaller than `scale` has no say. On large meshes heat flows between patches of vertices,
+//! which a fraction of the scale holds.
+
+mod heat;
+mod patches;
 
 use glam::DVec3;
 
 use super::area_vector;
 use crate::elementary::{atan2, cos, hypot, sin};
 use crate::mesh::{Id, TriangleMesh, VertexId, VertexMap};
-use crate::sparse::{Cholesky, NotPositiveDefinite, SymmetricMatrix};
+use crate::sparse::NotPositiveDefinite;
+use heat::Heat;
+use patches::Patches;
 
 /// The curvatures of a surface at one place.
 ///
@@ -31,10 +37,12 @@ pub struct Curvature {
     pub normal: DVec3,
 }
 
-/// The smoothed curvature tensor and normal of every vertex.
+/// The smoothed curvature tensor and normal everywhere on a surface.
 #[derive(Clone, Debug)]
 pub struct CurvatureField {
-    values: VertexMap<Value>,
+    /// Of every vertex, or of every patch of vertices.
+    values: Vec<Value>,
+    patches: Option<Patches>,
 }
 
 /// The principal curvatures and directions of every vertex, smoothed over `scale`.
@@ -49,7 +57,9 @@ pub fn principal_curvatures(
     scale: f64,
 ) -> Result<VertexMap<Curvature>, NotPositiveDefinite> {
     let field = CurvatureField::new(mesh.positions(), mesh.faces(), scale)?;
-    Ok(field.values.iter().map(Value::curvature).collect())
+    Ok(VertexMap::from_vec(
+        field.values.iter().map(Value::curvature).collect(),
+    ))
 }
 
 /// A normal and a symmetric tensor, entries (xx, yy, zz) and (xy, yz, zx); sums of such.
@@ -111,32 +121,53 @@ impl CurvatureField {
             positions,
             triangles,
         };
-        let heat = Heat::new(&surface, scale)?;
-        let areas: Vec<f64> = surface.corners().map(|t| area_vector(t).length()).collect();
-        let mut values = surface.vertex_normals(&areas);
-        let mut sums = vec![(Value::default(), 0.0); positions.len()];
-        for (&triangle, &area) in triangles.iter().zip(&areas) {
-            let tensor = surface.tensor(triangle, &values);
-            for v in triangle {
-                let (sum, total) = &mut sums[v.index()];
-                sum.add(tensor, area);
-                *total += area;
-            }
-        }
-        for (value, (sum, total)) in values.iter_mut().zip(sums) {
-            value.add(sum, 1.0 / f64::max(total, 1e-300));
-        }
-        heat.smooth(&mut values);
+        let mut values = surface.values();
+        Heat::of_vertices(&surface, scale)?.smooth(&mut values);
         Ok(Self {
-            values: VertexMap::from_vec(values),
+            values,
+            patches: None,
         })
     }
 
-    /// The curvatures at a place of a triangle, interpolated from its corners.
-    pub fn at(&self, triangle: [VertexId; 3], weights: [f64; 3]) -> Curvature {
+    /// The same in a time that hardly grows with the number of triangles: curvatures are measured on
+    /// all of them, and smoothed between patches of vertices of a fraction of the scale. Where
+    /// patches would be no larger than triangles, nothing is saved and nothing lost.
+    ///
+    /// # Errors
+    /// When areas overflow, so that the heat equation cannot be solved.
+    pub fn in_patches(
+        positions: &[DVec3],
+        triangles: &[[VertexId; 3]],
+        scale: f64,
+    ) -> Result<Self, NotPositiveDefinite> {
+        let surface = Surface {
+            positions,
+            triangles,
+        };
+        let patches = Patches::new(&surface, scale);
+        let mut values = patches.means(&surface.values());
+        patches.heat(scale)?.smooth(&mut values);
+        Ok(Self {
+            values,
+            patches: Some(patches),
+        })
+    }
+
+    /// The curvatures at a place of a triangle, interpolated from its corners or from the patches
+    /// around.
+    pub fn at(&self, triangle: [VertexId; 3], weights: [f64; 3], place: DVec3) -> Curvature {
         let mut sum = Value::default();
-        for (v, weight) in triangle.into_iter().zip(weights) {
-            sum.add(self.values[v], weight);
+        match &self.patches {
+            None => {
+                for (v, weight) in triangle.into_iter().zip(weights) {
+                    sum.add(self.values[v.index()], weight);
+                }
+            }
+            Some(patches) => {
+                for (patch, weight) in patches.around(triangle, place) {
+                    sum.add(self.values[patch], weight);
+                }
+            }
         }
         sum.curvature()
     }
@@ -155,6 +186,25 @@ impl<'a> Surface<'a> {
 
     fn at(&self, triangle: [VertexId; 3]) -> [DVec3; 3] {
         triangle.map(|v| self.positions[v.index()])
+    }
+
+    /// The normal and the curvature tensor of every vertex, means of those of its triangles.
+    fn values(self) -> Vec<Value> {
+        let areas: Vec<f64> = self.corners().map(|t| area_vector(t).length()).collect();
+        let mut values = self.vertex_normals(&areas);
+        let mut sums = vec![(Value::default(), 0.0); self.positions.len()];
+        for (&triangle, &area) in self.triangles.iter().zip(&areas) {
+            let tensor = self.tensor(triangle, &values);
+            for v in triangle {
+                let (sum, total) = &mut sums[v.index()];
+                sum.add(tensor, area);
+                *total += area;
+            }
+        }
+        for (value, (sum, total)) in values.iter_mut().zip(sums) {
+            value.add(sum, 1.0 / f64::max(total, 1e-300));
+        }
+        values
     }
 
     /// Unit normals, of faces weighted by area; the tensors are still zero.
@@ -220,64 +270,6 @@ fn tangent_frame(normal: DVec3) -> (DVec3, DVec3) {
     let axis = DVec3::AXES[normal.abs().min_position()];
     let u = normal.cross(axis).normalize_or_zero();
     (u, normal.cross(u))
-}
-
-/// One implicit step of the heat equation, factorised.
-struct Heat {
-    mass: Vec<f64>,
-    system: Cholesky,
-}
-
-impl Heat {
-    /// Prepares steps of time scale² / 4. Cotangents are kept in 0..=10, so that obtuse triangles
-    /// make no maximum anew and needles do not weld their ends together.
-    fn new(surface: &Surface, scale: f64) -> Result<Self, NotPositiveDefinite> {
-        let n = surface.positions.len();
-        let mut system = SymmetricMatrix::new(n);
-        let mut mass = vec![0.0; n];
-        for (&triangle, p) in surface.triangles.iter().zip(surface.corners()) {
-            let double_area = 2.0 * area_vector(p).length();
-            let ids = triangle.map(Id::index);
-            for i in 0..3 {
-                let [j, k] = [(i + 1) % 3, (i + 2) % 3];
-                mass[ids[i]] += double_area / 6.0;
-                let along = (p[i] - p[k]).dot(p[j] - p[k]);
-                let cotangent = (along / double_area.max(1e-300)).clamp(0.0, 10.0);
-                if ids[i] != ids[j] {
-                    let ends = [(ids[i], 1.0), (ids[j], -1.0)];
-                    system.add_square(&ends, cotangent * scale * scale / 8.0);
-                }
-            }
-        }
-        // Vertices whose faces have no area take on what is around them.
-        let least = 1e-9 * mass.iter().copied().fold(1e-300, f64::max);
-        for (i, mass) in mass.iter_mut().enumerate() {
-            *mass = mass.max(least);
-            system.add(i, i, *mass);
-        }
-        Ok(Self {
-            mass,
-            system: system.factorize()?,
-        })
-    }
-
-    fn smooth(&self, values: &mut [Value]) {
-        let parts: [fn(&mut Value) -> &mut DVec3; 3] =
-            [|v| &mut v.normal, |v| &mut v.diagonal, |v| &mut v.mixed];
-        for part in parts {
-            let mut column: Vec<DVec3> = values.iter_mut().map(|v| *part(v)).collect();
-            for _ in 0..2 {
-                column
-                    .iter_mut()
-                    .zip(&self.mass)
-                    .for_each(|(v, mass)| *v *= *mass);
-                self.system.solve_vectors(&mut column);
-            }
-            for (value, solved) in values.iter_mut().zip(column) {
-                *part(value) = solved;
-            }
-        }
-    }
 }
 
 #[cfg(test)]
@@ -365,10 +357,31 @@ mod tests {
     }
 
     #[test]
+    fn patches_of_a_fraction_of_the_scale_have_the_field_of_all_vertices() {
+        let mesh = shapes::limbs(3, 40);
+        let scale = 12.0 * mean_edge_length(&mesh);
+        let (positions, faces) = (mesh.positions(), mesh.faces());
+        let all = CurvatureField::new(positions, faces, scale).unwrap();
+        let patches = CurvatureField::in_patches(positions, faces, scale).unwrap();
+        assert!(3 * patches.values.len() < all.values.len());
+        let [mut off, mut bent, mut total] = [0.0; 3];
+        for &face in faces {
+            let middle = face.iter().map(|v| mesh.position(*v)).sum::<DVec3>() / 3.0;
+            let [a, b] = [&all, &patches].map(|field| field.at(face, [1.0 / 3.0; 3], middle));
+            let weight = (a.k1 - a.k2).abs();
+            off += weight * atan2(a.d1.cross(b.d1).length(), a.d1.dot(b.d1).abs());
+            bent += (a.k1 - b.k1).abs() + (a.k2 - b.k2).abs();
+            total += weight;
+        }
+        let [off, bent] = [(off / total).to_degrees(), bent / total];
+        assert!(off < 3.0 && bent < 0.1, "{off}° {bent}");
+    }
+
+    #[test]
     fn a_surface_without_area_is_flat_and_one_too_large_is_refused() {
         let faces = [[0, 1, 2].map(VertexId)];
         let field = CurvatureField::new(&[DVec3::ZERO; 3], &faces, 0.0).unwrap();
-        assert!(field.at(faces[0], [1.0, 0.0, 0.0]).k1.abs() < 1e-300);
+        assert!(field.at(faces[0], [1.0, 0.0, 0.0], DVec3::ZERO).k1.abs() < 1e-300);
         let huge = [DVec3::X, DVec3::Y, DVec3::Z].map(|p| p * 1e200);
         assert!(CurvatureField::new(&huge, &faces, 1e200).is_err());
     }

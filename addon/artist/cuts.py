@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Edges along which data on corners is cut, as texture coordinates are along seams.
+
+They are found on the mesh as the core welds it: where a seam is split, as importers split it, the
+two borders that lie on each other are one edge.
+"""
+
+from dataclasses import dataclass
+
+import bpy
+import mathutils
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import attributes
+
+Int = NDArray[np.int32]
+Index = NDArray[np.intp]
+
+# Borders no farther from each other than this share of the diagonal are welded by the core.
+_WELD = 1e-5
+
+
+@dataclass(frozen=True)
+class Seams:
+    """The sides of faces, those of one welded edge together."""
+
+    #: The two corners of every side, (S, 2), in the same order of places for all sides of an edge.
+    ends: Index
+    #: Where in `ends` the sides of every edge begin, (E,).
+    starts: Index
+    #: The vertex of every corner.
+    corner_vert: Int
+    #: For every vertex those that the core may take for it, itself among them.
+    twins: dict[int, list[int]]
+
+    def jumps(self, values: NDArray, least: float = 0.0) -> NDArray[np.bool_]:
+        """At which edges a value of corners differs by more than `least` between faces, (E,)."""
+        counts = np.diff(np.append(self.starts, len(self.ends)))
+        first = np.repeat(self.starts, counts)
+        found = np.zeros(len(self.ends), bool)
+        for end in self.ends.T:
+            one, other = values[end], values[end[first]]
+            if values.dtype == np.float32:
+                with np.errstate(invalid="ignore"):
+                    differs = np.abs(one - other) > least
+            else:
+                differs = one != other
+            found |= differs.any(axis=1)
+        return np.logical_or.reduceat(found, self.starts) if len(found) else found
+
+    def pairs(self, which: NDArray[np.bool_]) -> Int:
+        """The ends of some edges, (N, 2), by all vertices that the core may take for them."""
+        pairs = self.corner_vert[self.ends[self.starts[which]]]
+        more = [
+            (a, b)
+            for low, high in pairs[np.isin(pairs, list(self.twins)).any(axis=1)].tolist()
+            for a in self.twins.get(low, [low])
+            for b in self.twins.get(high, [high])
+        ]
+        pairs = np.concatenate([pairs, np.array(more, np.int32).reshape(-1, 2)])
+        return np.ascontiguousarray(pairs, np.int32)
+
+
+def read(mesh: bpy.types.Mesh) -> Seams:
+    """Finds out which sides of faces are on one edge."""
+    corner_vert = attributes.corner_verts(mesh)
+    loops = np.arange(len(corner_vert))
+    starts = attributes.loop_starts(mesh)
+    # The last corner of a face is followed by its first.
+    ahead = loops + 1
+    ahead[np.append(starts[1:], len(loops)) - 1] = starts
+    ends = np.stack([loops, ahead], axis=1)
+    names, twins = _named(attributes.positions(mesh), corner_vert[ends])
+    # Sides of one edge may run either way.
+    ends = np.where(names[:, :1] > names[:, 1:], ends[:, ::-1], ends)
+    order, firsts = _grouped(names)
+    return Seams(ends[order], firsts, corner_vert, twins)
+
+
+def _grouped(names: Index) -> tuple[Index, Index]:
+    """An order in which the sides of one edge follow each other, and where the edges begin."""
+    names = np.sort(names, axis=1)
+    order = np.lexsort(names.T)
+    is_first = np.ones(len(order), bool)
+    is_first[1:] = (np.diff(names[order], axis=0) != 0).any(axis=1)
+    return order, np.flatnonzero(is_first)
+
+
+def _alone(names: Index) -> Index:
+    """The sides that no other has the names of."""
+    order, firsts = _grouped(names)
+    counts = np.diff(np.append(firsts, len(order)))
+    return order[firsts[counts == 1]]
+
+
+def _named(points: NDArray[np.float32], ends: Int) -> tuple[Index, dict[int, list[int]]]:
+    """Names for the ends of every side, the same for all sides of an edge.
+
+    A side that has none beside it looks for others at its place, and if there is none, near it.
+    """
+    names = ends.astype(np.intp)
+    single = _alone(names)
+    places = _places(points, np.unique(ends[single]))
+    names[single] = len(points) + places[ends[single]]
+    border = single[_alone(names[single])]
+    twins = _twins(points, np.unique(places[ends[border]]))
+    nearest = np.arange(len(points))
+    for one, others in twins.items():
+        nearest[one] = others[0]
+    names[border] = 2 * len(points) + nearest[places[ends[border]]]
+    return names, twins
+
+
+def _places(points: NDArray[np.float32], which: Index) -> Index:
+    """For every vertex the first of those, of some, at the same place."""
+    # Both zeros are one place.
+    at = points[which] + np.float32(0)
+    order = np.lexsort(at.T)
+    is_new = np.ones(len(order), bool)
+    is_new[1:] = (np.diff(at[order], axis=0) != 0).any(axis=1)
+    firsts = np.arange(len(points))
+    firsts[which[order]] = which[order[is_new]][np.cumsum(is_new) - 1]
+    return firsts
+
+
+def _twins(points: NDArray[np.float32], which: Index) -> dict[int, list[int]]:
+    """Of vertices at different places those that others are near, and all that are near them."""
+    if len(which) == 0:
+        return {}
+    reach = _WELD * float(np.linalg.norm(np.ptp(points, axis=0)))
+    tree = mathutils.kdtree.KDTree(len(which))
+    for vertex in which.tolist():
+        tree.insert(points[vertex], vertex)
+    tree.balance()
+    near = {v: sorted(i for _, i, _ in tree.find_range(points[v], reach)) for v in which.tolist()}
+    return {vertex: others for vertex, others in near.items() if len(others) > 1}

@@ -1,0 +1,439 @@
+//! Meshes of several parts: what can be done is done, the rest stays as it was and is named.
+
+#[path = "../common/mod.rs"]
+mod common;
+mod mixed;
+
+use glam::DVec3;
+use mixed::{Mixed, ball, cube, kinds, remesh, settings, split_along, touching_blocks, walled_box};
+use orbflow_geometry::embed::{OffsetPredictor, PredictError, Proposal, Solver};
+use orbflow_geometry::hierarchy::CollapseHierarchy;
+use orbflow_geometry::measure::topology;
+use orbflow_geometry::mesh::{Id, PolygonMesh, VertexId};
+use orbflow_geometry::pipeline::{
+    self, Error, Flaw, Input, Kind, Outcome, Remeshed, Settings, SmallParts,
+};
+use orbflow_geometry::progress::Progress;
+use proptest::prelude::*;
+
+fn refused(mesh: &PolygonMesh, settings: &Settings) -> (Vec<pipeline::Kept>, String) {
+    match remesh(mesh, settings) {
+        Err(error) => {
+            let text = error.to_string();
+            match error {
+                Error::Refused { kept, .. } => (kept, text),
+                other => panic!("{other}"),
+            }
+        }
+        Ok(_) => panic!("it was not refused"),
+    }
+}
+
+/// Whether the last faces of a result are faces of the input, bit for bit and in order.
+fn stays(result: &Remeshed, mesh: &PolygonMesh, faces: impl IntoIterator<Item = usize>) {
+    let faces: Vec<usize> = faces.into_iter().collect();
+    assert_eq!(result.kept_faces, faces.len());
+    let first = result.mesh.n_faces() - faces.len();
+    for (i, &face) in faces.iter().enumerate() {
+        let bits = |mesh: &PolygonMesh, face| {
+            let corners = mesh.faces().nth(face).unwrap().iter();
+            let corners = corners.map(|&v| mesh.position(v).to_array().map(f64::to_bits));
+            corners.collect::<Vec<_>>()
+        };
+        assert_eq!(
+            bits(&result.mesh, first + i),
+            bits(mesh, face),
+            "face {face}"
+        );
+    }
+}
+
+#[test]
+fn a_stray_triangle_stays_and_the_box_is_done() {
+    let mut mixed = Mixed::default();
+    mixed.add_faces(
+        &[[3.0, 0.0, 0.0], [3.0, 1.0, 0.0], [3.0, 0.0, 1.0]],
+        &[&[0, 1, 2]],
+    );
+    mixed.add(&cube(3), DVec3::ZERO, 1.0);
+    let mesh = mixed.mesh();
+    let result = remesh(&mesh, &settings(100)).unwrap();
+    stays(&result, &mesh, [0]);
+    let kept = &result.report.kept;
+    assert_eq!((kept.len(), kept[0].part, kept[0].n_faces), (1, 0, 1));
+    assert_eq!(kinds(&kept[0]), ["border", "flat"]);
+    let reason = &kept[0].reasons[0];
+    assert!(
+        reason.text.starts_with("1 border loop, 3 border edges: "),
+        "{}",
+        reason.text
+    );
+    assert_eq!(
+        (reason.edges.len(), reason.faces.len(), reason.place[0]),
+        (3, 1, 3.0)
+    );
+    let made = result.mesh.n_faces() - 1;
+    assert!(made.abs_diff(100) <= 3, "{made}");
+    assert_eq!(result.report.parts.len(), 1);
+    assert_eq!(result.sphere.len(), result.mesh.n_vertices());
+    assert_eq!(result.sphere[result.mesh.n_vertices() - 1], DVec3::ZERO);
+    let strict = Settings {
+        strict: true,
+        ..settings(100)
+    };
+    let (kept, text) = refused(&mesh, &strict);
+    assert_eq!(kept.len(), 1);
+    assert!(
+        text.starts_with("1 of 2 parts cannot be done: part 1: 1 border loop"),
+        "{text}"
+    );
+}
+
+#[test]
+fn every_reason_of_every_part_is_told_when_none_can_be_done() {
+    let mut mixed = Mixed::default();
+    let mut torus = Mixed::default();
+    torus.add(&common::torus(8, 6), DVec3::ZERO, 1.0);
+    torus.faces.pop();
+    mixed.append(&torus);
+    mixed.add(&common::torus(8, 6), DVec3::X * 9.0, 1.0);
+    mixed.append(&walled_box(DVec3::X * 20.0));
+    let (kept, text) = refused(&mixed.mesh(), &settings(100));
+    let all: Vec<_> = kept.iter().map(kinds).collect();
+    assert_eq!(
+        all,
+        [
+            vec!["border", "handles"],
+            vec!["handles"],
+            vec!["shared-edges"]
+        ]
+    );
+    assert!(
+        text.starts_with("none of the 3 parts can be done: part 1: 1 border loop"),
+        "{text}"
+    );
+    for words in ["; genus 1: ", "part 2: genus 1", "3 faces meet at the edge"] {
+        assert!(text.contains(words), "{text}");
+    }
+    // A loop of a handle is told, closed.
+    let handle = &kept[1].reasons[0];
+    assert!(handle.edges.len() >= 3 && matches!(handle.flaw, Flaw::Handles { genus: 1 }));
+    match kept[2].reasons[0].flaw {
+        Flaw::SharedEdges { n_edges, n_faces } => assert_eq!((n_edges, n_faces), (4, 3)),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_ball_gets_the_faces_and_its_specks_stay_or_go() {
+    let mut mixed = Mixed::default();
+    mixed.add(&ball(6), DVec3::ZERO, 1.0);
+    for i in 0..20 {
+        mixed.add(&ball(1), DVec3::new(f64::from(i) * 0.1, 1.4, 0.0), 0.01);
+    }
+    let mesh = mixed.mesh();
+    let n_ball = ball(6).n_faces();
+    let result = remesh(&mesh, &settings(100)).unwrap();
+    assert_eq!(result.report.parts.len(), 1);
+    assert!(result.report.parts[0].n_faces.abs_diff(100) <= 3);
+    stays(&result, &mesh, n_ball..mesh.n_faces());
+    assert_eq!(result.report.kept.len(), 20);
+    for (i, kept) in result.report.kept.iter().enumerate() {
+        assert_eq!((kept.part, kinds(kept)), (i + 1, vec!["small"]));
+        assert!(
+            kept.reasons[0]
+                .text
+                .contains("of 100 faces; 6 are the fewest")
+        );
+    }
+    let drop = Settings {
+        small_parts: SmallParts::Drop,
+        // Small parts do not make a strict run fail.
+        strict: true,
+        ..settings(100)
+    };
+    let result = remesh(&mesh, &drop).unwrap();
+    assert_eq!((result.kept_faces, result.report.kept.len()), (0, 20));
+    assert_eq!(result.report.kept[3].outcome, Outcome::Dropped);
+}
+
+#[test]
+fn parts_are_small_by_their_share_or_by_a_size() {
+    let mut mixed = Mixed::default();
+    mixed.add(&ball(5), DVec3::ZERO, 1.0);
+    mixed.add(&ball(2), DVec3::X * 2.0, 0.3);
+    // Small and open is merely small.
+    mixed.add_faces(
+        &[[0.0, 2.0, 0.0], [0.1, 2.0, 0.0], [0.0, 2.1, 0.0]],
+        &[&[0, 1, 2]],
+    );
+    let mesh = mixed.mesh();
+    let many = remesh(&mesh, &settings(200)).unwrap().report;
+    assert_eq!((many.parts.len(), many.kept.len()), (2, 1));
+    assert_eq!(kinds(&many.kept[0]), ["border", "flat"]);
+    let sized = Settings {
+        small_size: 25.0,
+        strict: true,
+        ..settings(200)
+    };
+    let few = remesh(&mesh, &sized).unwrap().report;
+    assert_eq!((few.parts.len(), few.kept.len()), (1, 2));
+    assert_eq!(kinds(&few.kept[1]), ["border", "flat", "small"]);
+    assert!(
+        few.kept[0].reasons[0].text.starts_with("it measures 2"),
+        "{:?}",
+        few.kept
+    );
+    let all = Settings {
+        small_size: 100.0,
+        ..settings(200)
+    };
+    let (kept, text) = refused(&mesh, &all);
+    assert_eq!(kept.len(), 3);
+    assert!(
+        text.starts_with("none of the 3 parts can be done: part 1: it measures"),
+        "{text}"
+    );
+}
+
+#[test]
+fn equal_parts_get_the_fewest_faces_each_when_they_are_too_many() {
+    let mut mixed = Mixed::default();
+    for i in 0..12 {
+        mixed.add(
+            &cube(2),
+            DVec3::X * 3.0 * f64::from(i),
+            1.0 + 0.03 * f64::from(i),
+        );
+    }
+    let result = remesh(&mixed.mesh(), &settings(30)).unwrap();
+    assert_eq!(
+        (result.report.parts.len(), result.report.kept.len()),
+        (12, 0)
+    );
+    assert_eq!(result.mesh.n_faces(), 72);
+}
+
+#[test]
+fn blocks_that_touch_part_at_the_edge() {
+    let mesh = touching_blocks();
+    let result = remesh(&mesh, &settings(200)).unwrap();
+    let found = topology(&result.mesh, &Progress::none()).unwrap();
+    assert!(found.closed && found.manifold, "{found:?}");
+    assert_eq!((found.n_components, found.genus), (2, Some(0)));
+    assert!(result.report.kept.is_empty());
+}
+
+/// Embeds nothing with more than so many vertices.
+struct Picky(usize);
+
+impl OffsetPredictor for Picky {
+    fn name(&self) -> &'static str {
+        "picky"
+    }
+
+    fn propose(
+        &self,
+        hierarchy: &CollapseHierarchy,
+        progress: &Progress,
+    ) -> Result<Proposal, PredictError> {
+        let n = hierarchy.mesh().n_vertices();
+        if n > self.0 {
+            let reason = format!("{n} vertices are too many");
+            return Err(PredictError::Failed { reason });
+        }
+        Solver::default().propose(hierarchy, progress)
+    }
+}
+
+#[test]
+fn a_part_whose_run_fails_stays_as_it_was() {
+    let [small, large] = [ball(3), ball(5)];
+    let mut mixed = Mixed::default();
+    mixed.add(&small, DVec3::X * 4.0, 1.0);
+    mixed.add(&large, DVec3::ZERO, 1.0);
+    mixed.add(&small, DVec3::X * 8.0, 1.0);
+    let mesh = mixed.mesh();
+    let materials: Vec<i32> = (0..mesh.n_faces() as i32).collect();
+    let input = Input {
+        materials: Some(&materials),
+        ..Input::new(&mesh)
+    };
+    let run = |n| pipeline::remesh(input, &settings(90), &Picky(n), &Progress::none());
+    let result = run(small.n_vertices()).unwrap();
+    let from = small.n_faces();
+    stays(&result, &mesh, from..from + large.n_faces());
+    let kept = &result.report.kept;
+    assert_eq!(
+        (kept.len(), kept[0].part, kinds(&kept[0])),
+        (1, 1, vec!["failed"])
+    );
+    assert!(kept[0].reasons[0].text.ends_with("vertices are too many"));
+    // New faces take nothing from what stays, though it is nearest in places.
+    let new = &result.materials.unwrap()[..result.mesh.n_faces() - large.n_faces()];
+    let of_large = from as i32..(from + large.n_faces()) as i32;
+    assert!(new.iter().all(|material| !of_large.contains(material)));
+    match run(3) {
+        Err(Error::Refused { kept, .. }) => assert_eq!(kept.len(), 3),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn what_lies_on_kept_faces_comes_with_them() {
+    let mut mixed = Mixed::default();
+    let quads: [&[u32]; 2] = [&[0, 1, 2, 3], &[3, 2, 4]];
+    let points = [
+        [2., 0., 0.],
+        [2., 1., 0.],
+        [2., 1., 1.],
+        [2., 0., 1.],
+        [2., 0.5, 2.],
+    ];
+    mixed.add_faces(&points, &quads);
+    mixed.add(&cube(3), DVec3::ZERO, 1.0);
+    let mesh = mixed.mesh();
+    let materials: Vec<i32> = (0..mesh.n_faces() as i32).map(|i| i - 7).collect();
+    let carried = [[5, 6], [2, 3], [0, 2], [4, 2]].map(|ends: [u32; 2]| ends.map(VertexId));
+    let input = Input {
+        materials: Some(&materials),
+        carried: &carried,
+        cuts: Some(&[]),
+        ..Input::new(&mesh)
+    };
+    let result = pipeline::remesh(input, &settings(60), &Solver::default(), &Progress::none());
+    let result = result.unwrap();
+    stays(&result, &mesh, [0, 1]);
+    let n = result.mesh.n_faces();
+    assert_eq!(result.materials.unwrap()[n - 2..], [-7, -6]);
+    let origins = result.origins.unwrap();
+    assert_eq!(
+        origins.faces[n - 2..]
+            .iter()
+            .map(|f| f.0)
+            .collect::<Vec<_>>(),
+        [0, 1]
+    );
+    let n_corners = result.mesh.corners().len();
+    assert_eq!(origins.corners.len(), n_corners);
+    assert_eq!(origins.vertices.len(), result.mesh.n_vertices());
+    for (i, &v) in result.mesh.corners().iter().enumerate().skip(n_corners - 7) {
+        let place = result.mesh.position(v);
+        for origin in [origins.corners[i], origins.vertices[v.index()]] {
+            assert_eq!(origin.weights[0], 1.0);
+            let corner = mesh.corners()[origin.corners[0] as usize];
+            assert_eq!(mesh.position(corner), place);
+        }
+        let own = i - (n_corners - 7);
+        assert_eq!(origins.corners[i].corners[0] as usize, own);
+    }
+    // An edge between corners that are not neighbours is none, and lies on no face.
+    let first = result.mesh.n_vertices() as u32 - 5;
+    let named = result.carried.iter().filter(|edge| edge.ends[0].0 >= first);
+    let mut named: Vec<_> = named
+        .map(|edge| (edge.from, edge.ends.map(|v| v.0 - first)))
+        .collect();
+    named.sort_unstable();
+    assert_eq!(named, [(1, [2, 3]), (3, [2, 4])]);
+    assert!(
+        result
+            .report
+            .carried
+            .is_some_and(|told| told.n_edges == result.carried.len())
+    );
+}
+
+#[test]
+fn seams_that_nearly_close_are_welded_up_to_the_distance() {
+    for gap in [0.0, 1e-7, 9e-6, 3e-5] {
+        let mesh = split_along(&ball(6), gap);
+        let diagonal = mesh.bounds()[0].distance(mesh.bounds()[1]);
+        let result = remesh(&mesh, &settings(100));
+        if gap > 1e-5 {
+            let Err(error) = result else {
+                panic!("a gap of {gap} was welded");
+            };
+            assert!(error.to_string().contains("are not welded"), "{error}");
+            continue;
+        }
+        let clean = result.unwrap().report.clean;
+        if gap > 0.0 {
+            assert!(clean.n_seam_welded >= 24, "{clean:?}");
+            let off = (clean.weld_distance / diagonal / gap - 1.0).abs();
+            assert!(off < 0.01, "{clean:?}");
+            assert!(
+                clean.sentences()[0].contains("border points welded"),
+                "{clean:?}"
+            );
+        } else {
+            assert_eq!((clean.n_seam_welded, clean.weld_distance), (0, 0.0));
+        }
+        let off = Settings {
+            weld: None,
+            ..settings(100)
+        };
+        assert_eq!(remesh(&mesh, &off).is_ok(), gap == 0.0);
+    }
+}
+
+#[test]
+fn sizes_out_of_range_are_refused() {
+    let mesh = common::polygons(&ball(2));
+    for (weld, small_size) in [
+        (Some(-1e-9), 0.0),
+        (Some(0.02), 0.0),
+        (Some(f64::NAN), 0.0),
+        (None, -1.0),
+        (None, 100.5),
+        (None, f64::INFINITY),
+    ] {
+        let wrong = Settings {
+            weld,
+            small_size,
+            ..settings(50)
+        };
+        let error = remesh(&mesh, &wrong).unwrap_err();
+        assert!(matches!(error, Error::SizeOutOfRange { .. }), "{error}");
+    }
+}
+
+#[test]
+fn the_embedding_alone_refuses_and_the_decimation_takes_borders() {
+    let mut mixed = Mixed::default();
+    mixed.add(&ball(4), DVec3::ZERO, 1.0);
+    mixed.add_faces(
+        &[[3.0, 0.0, 0.0], [3.0, 1.0, 0.0], [3.0, 0.0, 1.0]],
+        &[&[0, 1, 2]],
+    );
+    let mesh = mixed.mesh();
+    let embedded = pipeline::embed(&mesh, 1, &Solver::default(), &Progress::none());
+    match embedded {
+        Err(Error::Refused { kept, n_parts }) => assert_eq!((kept.len(), n_parts), (1, 2)),
+        other => panic!("{other:?}"),
+    }
+    let decimated = pipeline::decimate(Input::new(&mesh), 40, &Progress::none()).unwrap();
+    assert!(decimated.mesh.n_faces() <= 41);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    #[test]
+    fn scraps_come_back_bit_for_bit_and_the_rest_is_done(
+        seed: u64, n_scraps in 0..6_usize, exponent in -200..200_i32, shape in 0..3_usize,
+    ) {
+        let size = 2_f64.powi(exponent);
+        let solid = [ball(3), cube(3), common::blob(seed, 4)].swap_remove(shape);
+        let (mesh, scraps) = Mixed::scattered(&solid, n_scraps, size, seed);
+        let wanted = Settings { kind: Kind::Triangles, ..settings(60) };
+        let result = remesh(&mesh, &wanted).unwrap();
+        stays(&result, &mesh, scraps.iter().copied());
+        prop_assert_eq!(result.report.kept.len(), n_scraps);
+        prop_assert!(result.report.kept.windows(2).all(|w| w[0].part < w[1].part));
+        let made = result.mesh.n_faces() - scraps.len();
+        prop_assert!(made.abs_diff(60) <= 2, "{}", made);
+        let again = remesh(&mesh, &Settings { threads: 2, ..wanted }).unwrap();
+        prop_assert_eq!(&again.mesh, &result.mesh);
+        prop_assert_eq!(&again.report.kept, &result.report.kept);
+    }
+}
