@@ -61,8 +61,7 @@ def done(outcome: Done, report: dict[str, Any], old: Before) -> Told:
             # The mesh is a part of the result.
             numbers = spots.gone(task.arrays)
         complaints = spots.complaints(report["kept"], numbers, n_parts)
-        is_there = any(part["outcome"] == "kept" for part in report["kept"])
-        title = f"Some parts were left {'as they were' if is_there else 'out'}"
+        title = "; ".join(words.counts(report))
         runs.remember_left(thing, Left(title, False, complaints))
     state = "warned" if words.warnings(report) else "done"
     lines = [_line(name, state, words.line(report)) for name in (task.name, *task.others)]

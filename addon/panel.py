@@ -184,7 +184,7 @@ def _draw_text(column: bpy.types.UILayout, text: str, icon: str, n_letters: int)
 
 
 def _draw_score(column: bpy.types.UILayout, report: dict[str, Any], n_letters: int) -> None:
-    for text in words.warnings(report):
+    for text in words.faults(report):
         _draw_text(column, text, "ERROR", n_letters)
     for text in words.exceptions(report):
         _draw_text(column, text, "INFO", n_letters)

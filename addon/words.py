@@ -38,7 +38,7 @@ _OF_ONE = {
     "flat": "is flat",
     "small": "is too small for this face count",
 }
-_OUTCOMES = (("kept", "left as they were"), ("dropped", "left out"))
+_OUTCOMES = {"kept": "left as they were", "dropped": "left out"}
 # Of more texts than these the rest is counted.
 _MOST_TEXTS = 3
 
@@ -85,19 +85,15 @@ def reason(reason: dict[str, Any]) -> str:
 
 def sentence(report: dict[str, Any]) -> str:
     """What became of an object in one line; Blender joins lines without a space."""
-    told = "".join(f"; {text}" for text in warnings(report) + exceptions(report))
-    return f"{counts(report)}{told}"
-
-
-def counts(report: dict[str, Any]) -> str:
-    """How many faces went in and came out."""
-    return f"{report['input']['n_faces']:,} faces became {report['output']['n_faces']:,}"
+    before, after = (report[side]["n_faces"] for side in ("input", "output"))
+    told = [*warnings(report), *_kept(report, small=True), *exceptions(report)]
+    return "; ".join([f"{before:,} faces became {after:,}", *told])
 
 
 def line(report: dict[str, Any]) -> str:
     """What became of one of several objects."""
-    n, told = (report[side]["n_faces"] for side in ("input", "output")), warnings(report)
-    return "; ".join(["{:,} → {:,}".format(*n), *told])
+    before, after = (report[side]["n_faces"] for side in ("input", "output"))
+    return "; ".join([f"{before:,} → {after:,}", *warnings(report)])
 
 
 def summary(states: list[str]) -> str:
@@ -107,9 +103,14 @@ def summary(states: list[str]) -> str:
     return ", ".join(counts)
 
 
+def faults(report: dict[str, Any]) -> list[str]:
+    """What may be wrong with a result."""
+    return [each["text"] for each in report["warnings"]]
+
+
 def warnings(report: dict[str, Any]) -> list[str]:
     """What may be wrong with a result, and which parts of the mesh could not be done."""
-    return [each["text"] for each in report["warnings"]] + _kept(report, small=False)
+    return faults(report) + _kept(report, small=False)
 
 
 def is_grave(report: dict[str, Any]) -> bool:
@@ -117,23 +118,33 @@ def is_grave(report: dict[str, Any]) -> bool:
     return any(each["grave"] for each in report["warnings"]) or bool(_kept(report, small=False))
 
 
-def _kept(report: dict[str, Any], *, small: bool) -> list[str]:
-    """How many parts were left as they were, or left out, and why: small ones, or the others."""
+def counts(report: dict[str, Any]) -> list[str]:
+    """How many parts were left as they were, and how many left out."""
+    outcomes = [part["outcome"] for part in report["kept"]]
+    return [
+        _count(report, outcome, outcomes.count(outcome))
+        for outcome in _OUTCOMES
+        if outcome in outcomes
+    ]
+
+
+def _count(report: dict[str, Any], outcome: str, n: int) -> str:
     n_parts = len(report["parts"]) + len(report["kept"])
+    return f"{n:,} of {n_parts:,} parts {_OUTCOMES[outcome]}"
+
+
+def _kept(report: dict[str, Any], *, small: bool) -> list[str]:
+    """The same of the small parts, or of the others, and why."""
     told = []
-    for outcome, left in _OUTCOMES:
-        parts = [
-            part
-            for part in report["kept"]
-            if part["outcome"] == outcome and is_small(part) == small
-        ]
-        if parts:
-            why = ", ".join(_reasons(parts))
-            told.append(f"{len(parts):,} of {n_parts:,} parts {left}: {why}")
+    for outcome in _OUTCOMES:
+        kept = [part for part in report["kept"] if part["outcome"] == outcome]
+        some = [part for part in kept if _is_small(part) == small]
+        if some:
+            told.append(f"{_count(report, outcome, len(some))}: {', '.join(_reasons(some))}")
     return told
 
 
-def is_small(part: dict[str, Any]) -> bool:
+def _is_small(part: dict[str, Any]) -> bool:
     """Whether a part was left because it is small, whatever else it is."""
     return any(each["kind"] == "small" for each in part["reasons"])
 
@@ -154,7 +165,6 @@ def exceptions(report: dict[str, Any]) -> list[str]:
     lost = ", ".join(sorted(set(report["lost"])))
     told = [_without_flow(report), _without_mirror(report), _without_marks(report)]
     told += [_without_network(report), f"not carried over: {lost}" if lost else ""]
-    told += _kept(report, small=True)
     told += [_cleaned(report), _welded(report), _shown(report), *_modifiers(report)]
     return [each for each in told if each]
 
