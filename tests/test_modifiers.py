@@ -349,7 +349,8 @@ def test_modifiers_of_a_linked_object_are_not_applied(open_fixture: Open, tmp_pa
     open_fixture("07")
     with bpy.data.libraries.load(path, link=True) as (_, wanted):
         wanted.objects = ["Cube"]
-    thing = wanted.objects[0].override_create()
+    linked: Any = wanted.objects[0]
+    thing = linked.override_create()
     thing.data = thing.data.copy()
     bpy.context.scene.collection.objects.link(thing)
     select(thing)
