@@ -187,9 +187,12 @@ def seen(copies: StandIns, thing: bpy.types.Object, given: Stack) -> Seen:
         return Seen(thing, keys.read(thing.data), [])
     copy = copies.of(thing)
     mesh, moved, lost = copy.evaluated_with_keys(given.names)
+    told = ", ".join(given.names)
     if not mesh.polygons and thing.data.polygons:
-        told = ", ".join(given.names)
         raise Refused(f"modifiers {told} leave no faces; instances have to be realized first")
+    if _is_torn(thing.data, mesh):
+        why = f"modifiers {told} tear it open where vertices only lie on each other"
+        raise Refused(f"{why}: merge them by distance, or switch off Apply Modifiers")
     copy.thing.data = mesh
     base = mesh_arrays.read(thing.data)
     materials = tuple(each and (each.name, _file_of(each)) for each in mesh.materials)
@@ -320,6 +323,22 @@ def _is_weighted(mesh: bpy.types.Mesh) -> bool:
 def _is_open(mesh: bpy.types.Mesh) -> bool:
     """Whether a mesh has borders."""
     return bool((np.bincount(attributes.corner_edges(mesh), minlength=1) == 1).any())
+
+
+def _is_torn(base: bpy.types.Mesh, mesh: bpy.types.Mesh) -> bool:
+    """Whether modifiers move vertices apart that lie on each other and close a mesh."""
+    return _is_open(base) and _is_open(mesh) and not _is_gaping(base) and _is_gaping(mesh)
+
+
+def _is_gaping(mesh: bpy.types.Mesh) -> bool:
+    """Whether a mesh has borders even where vertices of one place are one."""
+    # Zero has two signs.
+    places = attributes.positions(mesh) + np.float32(0)
+    _, vertex = np.unique(places, axis=0, return_inverse=True)
+    ends = vertex.ravel()[attributes.edge_verts(mesh)[attributes.corner_edges(mesh)]]
+    low, high = np.sort(ends, axis=1).astype(np.int64).T
+    key = (low * len(mesh.vertices) + high)[low != high]
+    return bool((np.unique(key, return_counts=True)[1] == 1).any())
 
 
 def _file_of(material: bpy.types.Material) -> str | None:

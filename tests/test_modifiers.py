@@ -342,6 +342,25 @@ def test_modifiers_that_leave_no_faces_are_named(open_fixture: Open) -> None:
     assert (arrays(thing), stack(thing)) == (before, ["Scatter"])
 
 
+def test_split_vertices_that_a_subdivision_moves_apart_are_named(open_fixture: Open) -> None:
+    thing = cube(open_fixture)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="DESELECT")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    thing.data.polygons[0].select = True
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.split()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    grid = thing.modifiers.new("Grid", "SUBSURF")
+    before = arrays(thing)
+    with pytest.raises(RuntimeError, match="modifiers Grid tear it open where vertices only lie"):
+        press.orbflow_remesh(faces=96)
+    assert (arrays(thing), stack(thing)) == (before, ["Grid"])
+    grid.subdivision_type = "SIMPLE"
+    assert press.orbflow_remesh(faces=96) == {"FINISHED"}
+    assert is_closed(thing.data)
+
+
 def test_modifiers_of_a_linked_object_are_not_applied(open_fixture: Open, tmp_path: Path) -> None:
     cube(open_fixture).modifiers.new("Subdivision", "SUBSURF").levels = 2
     path = str(tmp_path / "linked.blend")
