@@ -96,8 +96,14 @@ def half_ball(open_fixture: Open) -> Any:  # noqa: ANN401
 
 def test_a_mirrored_half_becomes_a_symmetric_whole(open_fixture: Open) -> None:
     thing = half_ball(open_fixture)
+    left, _ = (thing.vertex_groups.new(name=name) for name in ("Side.L", "Side.R"))
+    left.add(range(len(thing.data.vertices)), 1.0, "REPLACE")
     press.orbflow_remesh(faces=300)
     assert stack(thing) == []
+    names = [group.name for group in thing.vertex_groups]
+    for vertex in thing.data.vertices:
+        sides = [names[each.group] for each in vertex.groups if each.weight > 0.9]
+        assert abs(vertex.co.x) < 0.3 or sides == ["Side.L" if vertex.co.x > 0 else "Side.R"]
     assert is_closed(thing.data)
     assert np.linalg.norm(places(thing.data), axis=1) == pytest.approx(1, abs=0.03)
     assert is_symmetric(thing.data)
