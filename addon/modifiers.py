@@ -6,8 +6,6 @@ of them that is shown, in the stack's order. What follows a pose, a simulation o
 and is off meanwhile; so is what follows the last one.
 """
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -20,7 +18,7 @@ from .artist import keys, layers
 from .artist.keys import Key
 from .half import Half
 from .mesh_arrays import MeshArrays
-from .stand_in import stand_in
+from .stand_in import StandIns
 
 # Modifiers that make or remove vertices, edges or faces.
 _GENERATIVE = {
@@ -130,7 +128,7 @@ class Applied:
 
 @dataclass(frozen=True)
 class Seen:
-    """What is seen of an object while its modifiers are evaluated."""
+    """What is seen of an object, as long as there is the copy that was evaluated."""
 
     #: The object, or one that stands for it and has as its mesh what is seen.
     thing: bpy.types.Object
@@ -144,9 +142,9 @@ class Refused(Exception):
     """Modifiers of an object hinder a run."""
 
 
-def stack(context: bpy.types.Context, thing: bpy.types.Object, wanted: Wanted) -> Stack:
+def stack(copies: StandIns, thing: bpy.types.Object, wanted: Wanted) -> Stack:
     """What of an object's modifiers goes into the result; raises `Refused`."""
-    names = _applied(context, thing) if wanted.use_modifiers else ()
+    names = _applied(copies, thing) if wanted.use_modifiers else ()
     for each in thing.modifiers:
         if each.type == "MULTIRES" and each.total_levels and each.name not in names:
             raise Refused(f"apply or remove modifier {each.name} first: it holds a sculpt")
@@ -162,18 +160,16 @@ def stack(context: bpy.types.Context, thing: bpy.types.Object, wanted: Wanted) -
     return Stack(names, _settings_of(thing, names), kept)
 
 
-def _applied(context: bpy.types.Context, thing: bpy.types.Object) -> tuple[str, ...]:
+def _applied(copies: StandIns, thing: bpy.types.Object) -> tuple[str, ...]:
     """Those up to the last shown one that makes geometry."""
     counted = [each for each in thing.modifiers if each.show_viewport and each.type not in _KEPT]
     names = [each.name for each in counted]
-    n = max((i + 1 for i, each in enumerate(counted) if _is_generative(context, each)), default=0)
+    makes = [_is_generative(copies.context, each) for each in counted]
+    n = max((i + 1 for i, is_generative in enumerate(makes) if is_generative), default=0)
+    # Nodes may do anything: they count where they change the faces.
     nodes = [i for i in range(n, len(counted)) if _has_nodes(counted[i])]
-    if nodes:
-        with stand_in(context, thing) as copy:
-            # Nodes may do anything: they count where they change the faces.
-            changing = (i for i in reversed(nodes) if copy.is_changed(names[:i], names[i]))
-            n = next(changing, n - 1) + 1
-    return tuple(names[:n])
+    changing = (i for i in reversed(nodes) if copies.of(thing).is_changed(names[:i], names[i]))
+    return tuple(names[: next(changing, n - 1) + 1])
 
 
 def are_unchanged(thing: bpy.types.Object, given: Stack) -> bool:
@@ -185,27 +181,24 @@ def _settings_of(thing: bpy.types.Object, names: tuple[str, ...]) -> tuple[Any, 
     return tuple(_settings(thing, thing.modifiers.get(name)) for name in names)
 
 
-@contextmanager
-def seen(context: bpy.types.Context, thing: bpy.types.Object, given: Stack) -> Iterator[Seen]:
-    """What is seen of an object with modifiers of its stack; gone where the block ends.
-
-    Raises `Refused` where no face is left.
-    """
+def seen(copies: StandIns, thing: bpy.types.Object, given: Stack) -> Seen:
+    """What is seen of an object with modifiers of its stack; raises `Refused` where no face is."""
     if not given.names:
-        yield Seen(thing, keys.read(thing.data), [])
-        return
-    with stand_in(context, thing) as copy:
-        mesh, moved, lost = copy.evaluated_with_keys(given.names)
-        if not mesh.polygons and thing.data.polygons:
-            told = ", ".join(given.names)
-            raise Refused(f"modifiers {told} leave no faces; instances have to be realized first")
-        copy.thing.data = mesh
-        base = mesh_arrays.read(thing.data)
-        materials = tuple(each and (each.name, _file_of(each)) for each in mesh.materials)
-        applied = Applied(given, base, materials)
-        lost += [text for each in thing.modifiers if (text := _unseen_levels(context, each))]
-        lost += _dropped(thing, mesh)
-        yield Seen(copy.thing, moved, lost, applied)
+        return Seen(thing, keys.read(thing.data), [])
+    copy = copies.of(thing)
+    mesh, moved, lost = copy.evaluated_with_keys(given.names)
+    told = ", ".join(given.names)
+    if not mesh.polygons and thing.data.polygons:
+        raise Refused(f"modifiers {told} leave no faces; instances have to be realized first")
+    if _is_torn(thing.data, mesh):
+        why = f"modifiers {told} tear it open where vertices only lie on each other"
+        raise Refused(f"{why}: merge them by distance, or switch off Apply Modifiers")
+    copy.thing.data = mesh
+    base = mesh_arrays.read(thing.data)
+    materials = tuple(each and (each.name, _file_of(each)) for each in mesh.materials)
+    hidden = [_unseen_levels(copies.context, each) for each in thing.modifiers]
+    lost += [text for text in hidden if text] + _dropped(thing, mesh)
+    return Seen(copy.thing, moved, lost, Applied(given, base, materials))
 
 
 def leave(things: list[bpy.types.Object], gone: Applied) -> None:
@@ -330,6 +323,22 @@ def _is_weighted(mesh: bpy.types.Mesh) -> bool:
 def _is_open(mesh: bpy.types.Mesh) -> bool:
     """Whether a mesh has borders."""
     return bool((np.bincount(attributes.corner_edges(mesh), minlength=1) == 1).any())
+
+
+def _is_torn(base: bpy.types.Mesh, mesh: bpy.types.Mesh) -> bool:
+    """Whether modifiers move vertices apart that lie on each other and close a mesh."""
+    return _is_open(base) and _is_open(mesh) and not _is_gaping(base) and _is_gaping(mesh)
+
+
+def _is_gaping(mesh: bpy.types.Mesh) -> bool:
+    """Whether a mesh has borders even where vertices of one place are one."""
+    # Zero has two signs.
+    places = attributes.positions(mesh) + np.float32(0)
+    _, vertex = np.unique(places, axis=0, return_inverse=True)
+    ends = vertex.ravel()[attributes.edge_verts(mesh)[attributes.corner_edges(mesh)]]
+    low, high = np.sort(ends, axis=1).astype(np.int64).T
+    key = (low * len(mesh.vertices) + high)[low != high]
+    return bool((np.unique(key, return_counts=True)[1] == 1).any())
 
 
 def _file_of(material: bpy.types.Material) -> str | None:

@@ -23,8 +23,23 @@ class StandIn:
         """Copies an object, its mesh not."""
         self._context = context
         self._own = thing.data
-        self.made: list[bpy.types.Mesh] = []
+        self._made: list[bpy.types.Mesh] = []
         self.thing = thing.copy()
+
+    def prepare(self) -> None:
+        """Puts the copy into the scene, so that it can be evaluated."""
+        # Drivers and actions would set anew what is switched here.
+        self.thing.animation_data_clear()
+        for each in [each for each in self.thing.modifiers if each.type in _SIMULATED]:
+            self.thing.modifiers.remove(each)
+        # No modifier can name this collection, so that none comes upon the copy.
+        self._context.scene.collection.objects.link(self.thing)
+
+    def remove(self) -> None:
+        """Removes the copy and all meshes made of it."""
+        bpy.data.objects.remove(self.thing)
+        for mesh in self._made:
+            bpy.data.meshes.remove(mesh)
 
     def evaluated(self, names: tuple[str, ...] | list[str]) -> bpy.types.Mesh:
         """The mesh that the modifiers of these names make."""
@@ -37,7 +52,7 @@ class StandIn:
             preserve_all_data_layers=True,
             depsgraph=view_layer.depsgraph,
         )
-        self.made.append(mesh)
+        self._made.append(mesh)
         return mesh
 
     def is_changed(self, before: list[str], by: str) -> bool:
@@ -70,7 +85,7 @@ class StandIn:
     def _shape_by_hand(self) -> None:
         """Gives the copy a mesh of its own, without keys."""
         self.thing.data = self._own.copy()
-        self.made.append(self.thing.data)
+        self._made.append(self.thing.data)
         name = self.thing.data.shape_keys.name
         self.thing.shape_key_clear()
         # Up to Blender 4.5 keys of a copied mesh have one user too many, and are not gone.
@@ -100,27 +115,41 @@ class StandIn:
     def _remove(self, *meshes: bpy.types.Mesh) -> None:
         """One by one, as many keys of a large mesh would fill the memory."""
         for mesh in meshes:
-            self.made.remove(mesh)
+            self._made.remove(mesh)
             bpy.data.meshes.remove(mesh)
+
+
+class StandIns:
+    """Copies of objects, made when they are asked for."""
+
+    def __init__(self, context: bpy.types.Context) -> None:
+        """Makes none."""
+        self.context = context
+        self._made: dict[bpy.types.Object, StandIn] = {}
+
+    def of(self, thing: bpy.types.Object) -> StandIn:
+        """The copy of an object, always the same one: its modifiers are fast the second time."""
+        if thing not in self._made:
+            self._made[thing] = StandIn(self.context, thing)
+            self._made[thing].prepare()
+        return self._made[thing]
+
+    def remove(self) -> None:
+        """Removes all copies, and all meshes made of them."""
+        for each in self._made.values():
+            each.remove()
+        if self._made:
+            self.context.view_layer.update()
 
 
 @contextmanager
-def stand_in(context: bpy.types.Context, thing: bpy.types.Object) -> Iterator[StandIn]:
-    """A copy of an object; it and all meshes made of it are gone where the block ends."""
-    made = StandIn(context, thing)
+def stand_ins(context: bpy.types.Context) -> Iterator[StandIns]:
+    """Copies of objects that are gone where the block ends."""
+    made = StandIns(context)
     try:
-        # Drivers and actions would set anew what is switched here.
-        made.thing.animation_data_clear()
-        for each in [each for each in made.thing.modifiers if each.type in _SIMULATED]:
-            made.thing.modifiers.remove(each)
-        # No modifier can name this collection, so that none comes upon the copy.
-        context.scene.collection.objects.link(made.thing)
         yield made
     finally:
-        bpy.data.objects.remove(made.thing)
-        for mesh in made.made:
-            bpy.data.meshes.remove(mesh)
-        context.view_layer.update()
+        made.remove()
 
 
 def _whole(found: list[Key]) -> dict[str, Key]:

@@ -81,14 +81,18 @@ def test_what_modifiers_bring_of_the_artists_comes_over(open_fixture: Open) -> N
     for name in ("Arm.L", "Arm.R"):
         thing.vertex_groups.new(name=name)
     thing.vertex_groups["Arm.L"].add(range(8), 0.5, "REPLACE")
+    thing.vertex_groups["Arm.R"].lock_weight = True
+    thing.vertex_groups.active_index = 1
     materials = [bpy.data.materials.new(name) for name in ("Skin", "Rim")]
     for material in materials:
         thing.data.materials.append(material)
     thing.modifiers.new("Grid", "SUBSURF").subdivision_type = "SIMPLE"
     solid = thing.modifiers.new("Shell", "SOLIDIFY")
     solid.offset, solid.material_offset, solid.thickness = 1, 1, 0.25
-    press.orbflow_remesh(faces=400, marked_edges={"SEAM"})
-    assert [group.name for group in thing.vertex_groups] == ["Arm.L", "Arm.R"]
+    press.orbflow_remesh(faces=400, marked_edges={"SEAM"}, density="Arm.L")
+    groups = [(group.name, group.lock_weight) for group in thing.vertex_groups]
+    assert groups == [("Arm.L", False), ("Arm.R", True)]
+    assert thing.vertex_groups.active_index == 1
     weights = [each.weight for vertex in thing.data.vertices for each in vertex.groups]
     assert weights == pytest.approx([0.5] * len(thing.data.vertices), abs=1e-3)
     assert list(thing.data.materials) == materials

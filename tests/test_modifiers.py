@@ -96,8 +96,14 @@ def half_ball(open_fixture: Open) -> Any:  # noqa: ANN401
 
 def test_a_mirrored_half_becomes_a_symmetric_whole(open_fixture: Open) -> None:
     thing = half_ball(open_fixture)
+    left, _ = (thing.vertex_groups.new(name=name) for name in ("Side.L", "Side.R"))
+    left.add(range(len(thing.data.vertices)), 1.0, "REPLACE")
     press.orbflow_remesh(faces=300)
     assert stack(thing) == []
+    names = [group.name for group in thing.vertex_groups]
+    for vertex in thing.data.vertices:
+        sides = [names[each.group] for each in vertex.groups if each.weight > 0.9]
+        assert abs(vertex.co.x) < 0.3 or sides == ["Side.L" if vertex.co.x > 0 else "Side.R"]
     assert is_closed(thing.data)
     assert np.linalg.norm(places(thing.data), axis=1) == pytest.approx(1, abs=0.03)
     assert is_symmetric(thing.data)
@@ -342,6 +348,25 @@ def test_modifiers_that_leave_no_faces_are_named(open_fixture: Open) -> None:
     assert (arrays(thing), stack(thing)) == (before, ["Scatter"])
 
 
+def test_split_vertices_that_a_subdivision_moves_apart_are_named(open_fixture: Open) -> None:
+    thing = cube(open_fixture)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="DESELECT")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    thing.data.polygons[0].select = True
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.split()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    grid = thing.modifiers.new("Grid", "SUBSURF")
+    before = arrays(thing)
+    with pytest.raises(RuntimeError, match="modifiers Grid tear it open where vertices only lie"):
+        press.orbflow_remesh(faces=96)
+    assert (arrays(thing), stack(thing)) == (before, ["Grid"])
+    grid.subdivision_type = "SIMPLE"
+    assert press.orbflow_remesh(faces=96) == {"FINISHED"}
+    assert is_closed(thing.data)
+
+
 def test_modifiers_of_a_linked_object_are_not_applied(open_fixture: Open, tmp_path: Path) -> None:
     cube(open_fixture).modifiers.new("Subdivision", "SUBSURF").levels = 2
     path = str(tmp_path / "linked.blend")
@@ -349,7 +374,8 @@ def test_modifiers_of_a_linked_object_are_not_applied(open_fixture: Open, tmp_pa
     open_fixture("07")
     with bpy.data.libraries.load(path, link=True) as (_, wanted):
         wanted.objects = ["Cube"]
-    thing = wanted.objects[0].override_create()
+    linked: Any = wanted.objects[0]
+    thing = linked.override_create()
     thing.data = thing.data.copy()
     bpy.context.scene.collection.objects.link(thing)
     select(thing)

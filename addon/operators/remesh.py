@@ -23,6 +23,7 @@ from .. import (
 )
 from ..job import Done, Failed, Job, Outcome, Task, Todo, remesh, running
 from ..outcomes import Told
+from ..stand_in import StandIns, stand_ins
 
 _TICK_S = 0.05
 
@@ -166,27 +167,32 @@ def _is_editable(thing: bpy.types.Object) -> bool:
 
 def _tasks(context: bpy.types.Context, wanted: settings.Settings) -> list[Todo]:
     context.view_layer.update()
-    todo: list[Todo] = []
-    # Objects that share a mesh go on sharing it where one result does for them.
+    with stand_ins(context) as copies:
+        things = [each for each in context.selected_objects if each.type == "MESH"]
+        failed, alike = _sort(things, copies, wanted)
+        return failed + [
+            _task(things, copies, stack, wanted) for (_, stack, *_), things in alike.items()
+        ]
+
+
+def _sort(
+    things: list[bpy.types.Object], copies: StandIns, wanted: settings.Settings
+) -> tuple[list[Todo], dict[Any, list[bpy.types.Object]]]:
+    """Which objects cannot be done; which of the others share a mesh that one result does for."""
+    failed: list[Todo] = []
     alike: dict[Any, list[bpy.types.Object]] = {}
-    for thing in [each for each in context.selected_objects if each.type == "MESH"]:
+    for thing in things:
         if reason := _why_left(thing):
-            todo.append(Failed(thing.name, reason))
+            failed.append(Failed(thing.name, reason))
             continue
         try:
-            stack = modifiers.stack(context, thing, wanted)
+            stack = modifiers.stack(copies, thing, wanted)
         except modifiers.Refused as error:
-            todo.append(Failed(thing.name, str(error)))
+            failed.append(Failed(thing.name, str(error)))
             continue
         scale = (f"{x:.5g}" for x in thing.matrix_world.to_scale())
         alike.setdefault((thing.data, stack, *scale), []).append(thing)
-    for (_, stack, *_), things in alike.items():
-        try:
-            with modifiers.seen(context, things[0], stack) as seen:
-                todo.append(_task(things, seen, wanted))
-        except modifiers.Refused as error:
-            todo.append(Failed(things[0].name, str(error)))
-    return todo
+    return failed, alike
 
 
 def _why_left(thing: bpy.types.Object) -> str:
@@ -198,16 +204,22 @@ def _why_left(thing: bpy.types.Object) -> str:
     return ""
 
 
-def _task(things: list[bpy.types.Object], seen: modifiers.Seen, wanted: settings.Settings) -> Todo:
+def _task(
+    things: list[bpy.types.Object],
+    copies: StandIns,
+    stack: modifiers.Stack,
+    wanted: settings.Settings,
+) -> Todo:
     thing, *others = things
+    try:
+        seen = modifiers.seen(copies, thing, stack)
+        given = artist.read([seen.thing] + [each for each in things if each != seen.thing])
+        wish = density.read(seen.thing, wanted.density, given.groups)
+    except (modifiers.Refused, density.NoSuchName) as error:
+        return Failed(thing.name, str(error))
+    given = replace(given, keys=seen.keys, lost=given.lost + seen.lost)
     arrays = mesh_arrays.read(seen.thing.data, wanted.marked_edges)
     scale = tuple(thing.matrix_world.to_scale())
-    given = artist.read([seen.thing] + [each for each in things if each != seen.thing])
-    given = replace(given, keys=seen.keys, lost=given.lost + seen.lost)
-    try:
-        wish = density.read(seen.thing, wanted.density, given.groups)
-    except density.NoSuchName as error:
-        return Failed(thing.name, str(error))
     names = tuple(each.name for each in others)
     return Task(thing.name, arrays, scale, given, wish, names, seen.applied)
 
