@@ -35,8 +35,8 @@ fn horned(shift: f64) -> PolygonMesh {
 }
 
 #[test]
-fn a_ball_and_a_box_have_nothing_to_warn_of_with_a_score_and_without() {
-    for mesh in [common::sphere(10), common::cuboid(6)] {
+fn balls_and_rods_have_nothing_to_warn_of_with_a_score_and_without() {
+    for mesh in [common::sphere(10), common::capsule(2.0, 8)] {
         let mesh = common::polygons(&mesh);
         let scored = Settings {
             score: Some(score::Settings::default()),
