@@ -62,7 +62,9 @@ impl Density {
 /// vertices of the target, which it lies on.
 pub fn weights(values: &VertexMap<f64>, target: &Target, even: &TriangleMesh) -> VertexMap<f64> {
     let places = even.positions().iter();
-    places.map(|&place| weight_at(values, target, place)).collect()
+    places
+        .map(|&place| weight_at(values, target, place))
+        .collect()
 }
 
 /// The same at the place of the target that is nearest to another.

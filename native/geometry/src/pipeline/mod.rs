@@ -27,6 +27,7 @@ mod probe;
 mod report;
 mod rods;
 mod settings;
+mod sheets;
 mod split;
 mod verbs;
 

@@ -7,6 +7,8 @@ use crate::elementary::sin_cos;
 use crate::mesh::VertexId;
 use crate::mirror::mirrored;
 
+/// A ring of so many quads is closed by three quads: a rectangle would have no vertex at the tip.
+pub(super) const STAR: usize = 6;
 /// How far from the poles the first and the last ring are, in radians.
 const CAP: f64 = 0.6;
 
@@ -30,24 +32,23 @@ struct Cap {
 
 impl Ball {
     /// Rings one after the other, closed by rectangles of `cap` quads; `tips` are the ends' places.
-    pub fn new(
-        rings: &[Ring],
-        cap: [usize; 2],
-        tips: [DVec3; 2],
-        mirror: Option<usize>,
-    ) -> Self {
+    pub fn new(rings: &[Ring], cap: [usize; 2], tips: [DVec3; 2], mirror: Option<usize>) -> Self {
         let n = rings[0].points.len();
         let last = rings.len() - 1;
         let mut ball = Self {
             quads: Vec::new(),
-            positions: rings.iter().flat_map(|ring| ring.points.iter().copied()).collect(),
+            positions: rings
+                .iter()
+                .flat_map(|ring| ring.points.iter().copied())
+                .collect(),
             sphere: Vec::new(),
             on_lines: Vec::new(),
         };
         for i in 0..=last {
             let share = i as f64 / last as f64;
             let from_pole = CAP + share * (std::f64::consts::PI - 2.0 * CAP);
-            ball.sphere.extend((0..n).map(|j| latitude(j as f64 / n as f64, from_pole)));
+            ball.sphere
+                .extend((0..n).map(|j| latitude(j as f64 / n as f64, from_pole)));
         }
         ball.sides(rings);
         let offset = offset(&rings[0], cap, mirror);
@@ -58,7 +59,11 @@ impl Ball {
                 offset,
                 is_high,
             };
-            ball.close(&cap, first, (ring, tip));
+            if n == STAR {
+                ball.close_to_a_point(&cap, first, (ring, tip));
+            } else {
+                ball.close(&cap, first, (ring, tip));
+            }
         }
         ball.on_lines.sort_unstable();
         ball
@@ -86,6 +91,25 @@ impl Ball {
         }
     }
 
+    /// Closes a ring of six by three quads round the tip.
+    fn close_to_a_point(&mut self, cap: &Cap, first: usize, (ring, tip): (&Ring, DVec3)) {
+        let n = ring.points.len();
+        let middle = ring.centre();
+        self.positions
+            .push(middle + ring.axis() * ring.axis().dot(tip - middle));
+        self.sphere
+            .push(if cap.is_high { DVec3::Z } else { -DVec3::Z });
+        let top = self.positions.len() as u32 - 1;
+        let at = |i: usize| (first + (i + cap.offset) % n) as u32;
+        for i in (0..n).step_by(2) {
+            let mut quad = [top, at(i), at(i + 1), at(i + 2)];
+            if !cap.is_high {
+                quad.reverse();
+            }
+            self.quads.push(quad);
+        }
+    }
+
     /// Closes a ring whose vertices are numbered from `first` on.
     fn close(&mut self, cap: &Cap, first: usize, (ring, tip): (&Ring, DVec3)) {
         let [a, b] = cap.sides;
@@ -103,8 +127,10 @@ impl Ball {
                     let edge = between(&ring.points, at);
                     // A dome, which a flat end is without a rise.
                     let up = (1.0 - share * share).sqrt();
-                    self.positions.push(middle + (edge - middle) * share + rise * up);
-                    self.sphere.push(on_cap((share, at / n as f64), n, cap.is_high));
+                    self.positions
+                        .push(middle + (edge - middle) * share + rise * up);
+                    self.sphere
+                        .push(on_cap((share, at / n as f64), n, cap.is_high));
                     self.positions.len() as u32 - 1
                 };
             }
@@ -159,7 +185,11 @@ fn latitude(share: f64, from_pole: f64) -> DVec3 {
 
 /// A point of a cap: at a share of the way from the pole to a point of the ring's chords.
 fn on_cap((share, turn): (f64, f64), n: usize, is_high: bool) -> DVec3 {
-    let from_pole = if is_high { std::f64::consts::PI - CAP } else { CAP };
+    let from_pole = if is_high {
+        std::f64::consts::PI - CAP
+    } else {
+        CAP
+    };
     let at = turn * n as f64;
     let [p, q] = [at.floor(), at.floor() + 1.0].map(|i| latitude(i / n as f64, from_pole));
     let edge = p.lerp(q, at - at.floor());
@@ -182,6 +212,9 @@ fn offset(ring: &Ring, [a, b]: [usize; 2], mirror: Option<usize>) -> usize {
     };
     let sum = mirror.and_then(|axis| (0..n).min_by(|&s, &t| off(s, axis).total_cmp(&off(t, axis))));
     let sum = sum.unwrap_or(0);
+    if n == STAR {
+        return sum / 2 % n;
+    }
     let is_even = |o: &usize| {
         let middles = [2 * o + a, 2 * o + 2 * a + b];
         middles.iter().any(|m| m % n == sum) || (a == b && 2 * o % n == sum)

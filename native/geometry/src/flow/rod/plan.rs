@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::ball::STAR;
 use super::lines::Lines;
 use super::section::{Profile, Section};
 use crate::elementary::ln;
@@ -63,7 +64,7 @@ impl Plan {
         let choices = choices.filter_map(|n| {
             let shares = shared(&gaps, n);
             let cap = cap(n, &shares);
-            let n_rings = n_rings(n, cap, wishes.n_quads)?;
+            let n_rings = n_rings(n, n_ends(n, cap), wishes.n_quads)?;
             let cost = cost(profile, (n, &gaps), &shares, wishes.n_quads);
             Some((cost, n, shares, cap, n_rings))
         });
@@ -81,7 +82,11 @@ impl Plan {
 
 /// How far it is from one line along the rod to the next in a section.
 pub(super) fn gaps(section: &Section) -> Vec<f64> {
-    let at: Vec<f64> = section.crossed.iter().map(|c| section.at_corner(c.1)).collect();
+    let at: Vec<f64> = section
+        .crossed
+        .iter()
+        .map(|c| section.at_corner(c.1))
+        .collect();
     let n = at.len();
     let gap = |i: usize| {
         if i + 1 < n {
@@ -121,17 +126,17 @@ fn cap(n: usize, shares: &[usize]) -> [usize; 2] {
     }
 }
 
-fn n_rings(n: usize, [a, b]: [usize; 2], n_quads: usize) -> Option<usize> {
-    let steps = (n_quads.checked_sub(2 * a * b)? as f64 / n as f64).round() as usize;
+/// How many quads close both ends.
+fn n_ends(n: usize, [a, b]: [usize; 2]) -> usize {
+    if n == STAR { STAR } else { 2 * a * b }
+}
+
+fn n_rings(n: usize, n_ends: usize, n_quads: usize) -> Option<usize> {
+    let steps = (n_quads.checked_sub(n_ends)? as f64 / n as f64).round() as usize;
     (steps >= 2).then_some(steps + 1)
 }
 
-fn cost(
-    profile: &Profile,
-    (n, gaps): (usize, &[f64]),
-    shares: &[usize],
-    n_quads: usize,
-) -> f64 {
+fn cost(profile: &Profile, (n, gaps): (usize, &[f64]), shares: &[usize], n_quads: usize) -> f64 {
     let girth = profile.area() / profile.length();
     let even = girth / (profile.area() / n_quads as f64).sqrt();
     let long = 2.0 * ln(n as f64 / even).abs();
@@ -182,19 +187,18 @@ fn stops(
 }
 
 /// The first and the last ring, and those on lines round the rod that are far enough apart.
-fn fixed(
-    profile: &Profile,
-    lines: &Lines,
-    (n, cap): (usize, [usize; 2]),
-    step: f64,
-) -> Vec<Stop> {
+fn fixed(profile: &Profile, lines: &Lines, (n, cap): (usize, [usize; 2]), step: f64) -> Vec<Stop> {
     let length = profile.length();
     // An end without a rim is closed by quads as large as those round the rod.
     let wide = profile.area() / length / n as f64;
     let size = (cap[0] * cap[1]) as f64 * wide * wide;
     let open = |along: f64| Stop { along, round: None };
     let low = open(profile.along_area(size).min(0.5 * step));
-    let high = open(profile.along_area(profile.area() - size).max(length - 0.5 * step));
+    let high = open(
+        profile
+            .along_area(profile.area() - size)
+            .max(length - 0.5 * step),
+    );
     let n_round = lines.round.len();
     let on = |i: usize| Stop {
         along: lines.round[i].0,

@@ -56,10 +56,14 @@ impl Rings<'_> {
         let sections = self.plan.stops.iter().map(|&stop| self.section(stop));
         let sections: Vec<Section> = sections.collect::<Option<_>>()?;
         let known = |section: &Section| self.on_lines(section);
-        let start = sections.iter().position(|s| known(s).is_some()).unwrap_or(0);
+        let start = sections
+            .iter()
+            .position(|s| known(s).is_some())
+            .unwrap_or(0);
         let n = sections.len();
         let mut rings: Vec<Option<Ring>> = vec![None; n];
-        rings[start] = Some(known(&sections[start]).unwrap_or_else(|| self.first(&sections[start])));
+        rings[start] =
+            Some(known(&sections[start]).unwrap_or_else(|| self.first(&sections[start])));
         for i in (start + 1..n).chain((0..start).rev()) {
             let before = if i > start { i - 1 } else { i + 1 };
             let section = &sections[i];
@@ -132,7 +136,9 @@ impl Rings<'_> {
         let step = section.girth() / n as f64;
         let starts = match self.mirror.and_then(|axis| in_plane(section, axis)) {
             Some(at) => vec![at, at + 0.5 * step],
-            None => (0..N_TURNS).map(|i| step * i as f64 / N_TURNS as f64).collect(),
+            None => (0..N_TURNS)
+                .map(|i| step * i as f64 / N_TURNS as f64)
+                .collect(),
         };
         let shares: Vec<f64> = (0..n).map(|i| i as f64 / n as f64).collect();
         let made = |start: f64| ring(section, (start, shares.clone()), vec![false; n]);
@@ -166,7 +172,9 @@ fn in_plane(section: &Section, axis: usize) -> Option<f64> {
 
 fn ring(section: &Section, (start, shares): (f64, Vec<f64>), is_on_line: Vec<bool>) -> Ring {
     let girth = section.girth();
-    let points = shares.iter().map(|share| section.point(start + share * girth));
+    let points = shares
+        .iter()
+        .map(|share| section.point(start + share * girth));
     Ring {
         points: points.collect(),
         is_on_line,
@@ -190,8 +198,14 @@ fn follow(before: &Ring, section: &Section) -> Ring {
         .collect();
     let girth = section.girth();
     let off = |start: f64| -> f64 {
-        let places = before.shares.iter().map(|s| section.point(start + s * girth));
-        places.zip(&wanted).map(|(p, q)| p.distance_squared(*q)).sum()
+        let places = before
+            .shares
+            .iter()
+            .map(|s| section.point(start + s * girth));
+        places
+            .zip(&wanted)
+            .map(|(p, q)| p.distance_squared(*q))
+            .sum()
     };
     let step = girth / N_TURNS as f64;
     let mut best = (f64::INFINITY, 0.0);
@@ -219,9 +233,16 @@ fn follow(before: &Ring, section: &Section) -> Ring {
 /// Widens a ring until it holds as much as its section; what lies on lines stays.
 fn swell(ring: &mut Ring, section: &Section) {
     let [wanted, now] = [section.area().length(), area(&ring.points).length()];
-    let factor = (wanted / now.max(f64::MIN_POSITIVE)).sqrt().clamp(1.0, MOST_SWELL);
+    let factor = (wanted / now.max(f64::MIN_POSITIVE))
+        .sqrt()
+        .clamp(1.0, MOST_SWELL);
     let middle = ring.centre();
-    for (p, _) in ring.points.iter_mut().zip(&ring.is_on_line).filter(|p| !p.1) {
+    for (p, _) in ring
+        .points
+        .iter_mut()
+        .zip(&ring.is_on_line)
+        .filter(|p| !p.1)
+    {
         *p = middle + (*p - middle) * factor;
     }
 }

@@ -162,7 +162,13 @@ impl Profile {
     /// Samples at even shares of the area, closer at the ends. None where a level has no line.
     pub fn new(levels: &Levels<'_>, girth: f64) -> Option<Self> {
         let mesh = levels.mesh;
-        let mean = |f: FaceId| mesh.face(f).iter().map(|&v| levels.height.of[v]).sum::<f64>() / 3.0;
+        let mean = |f: FaceId| {
+            mesh.face(f)
+                .iter()
+                .map(|&v| levels.height.of[v])
+                .sum::<f64>()
+                / 3.0
+        };
         let mut faces: Vec<(f64, f64)> = mesh
             .face_ids()
             .map(|f| (mean(f), area_vector(mesh.triangle(f)).length()))
