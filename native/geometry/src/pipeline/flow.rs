@@ -7,6 +7,7 @@ use super::crosses;
 use super::even::{For, Marked, even};
 use super::flowed::{Flowed, FlowedPart, better};
 use super::probe::n_missed;
+use super::sheets::Thick;
 use super::{density, mirror, rods};
 use crate::deform::{self, Flowing, Target};
 use crate::embed::{self, Covered};
@@ -73,15 +74,39 @@ pub fn flow_part(
     clock: &mut Clock,
     progress: &Progress<'_>,
 ) -> Result<Result<FlowedPart, String>, Cancelled> {
-    let (n_quads, settings) = (asked.n_quads, asked.settings);
-    let part = progress.part("sphere", 0.0, 0.15);
-    let wanted = Marked::new(target.mesh(), asked.marked);
-    if rods::are_clear(target) {
+    let part = progress.part("sphere", 0.0, 0.05);
+    let thick = clock.step("sphere", || Thick::new(map, target, asked, &part))?;
+    if let Some(thick) = thick {
+        let (map, made_on) = (&thick.map, &thick.target);
+        let part = progress.part("", 0.05, 0.6);
+        if let Ok(found) = flowing(map, made_on, asked, clock, &part)? {
+            let onto = (target, asked.axis);
+            let found = told(thick.thinned(found, onto, progress))?;
+            if found.as_ref().is_ok_and(FlowedPart::is_sound) {
+                return Ok(found);
+            }
+        }
+    } else if rods::are_clear(target) {
+        let wanted = Marked::new(target.mesh(), asked.marked);
         let found = rods::rings(map, (target, &wanted), asked, (clock, &part))?;
-        if found.as_ref().is_ok_and(|rings| rings.is_sound()) {
+        if found.as_ref().is_ok_and(FlowedPart::is_sound) {
             return Ok(found);
         }
     }
+    flowing(map, target, asked, clock, progress)
+}
+
+/// Quads off the flat metric of an even surface.
+fn flowing(
+    map: &SphereMap,
+    target: &Target,
+    asked: Asked<'_>,
+    clock: &mut Clock,
+    progress: &Progress<'_>,
+) -> Result<Result<FlowedPart, String>, Cancelled> {
+    let (n_quads, settings) = (asked.n_quads, asked.settings);
+    let part = progress.part("sphere", 0.0, 0.15);
+    let wanted = Marked::new(target.mesh(), asked.marked);
     let mut style = settings.flow(n_quads);
     if !wanted.is_empty() {
         style.field.alignment *= BESIDE_MARKS;

@@ -33,6 +33,7 @@ mod report;
 mod rods;
 mod scored;
 mod settings;
+mod sheets;
 mod small;
 mod split;
 mod stay;

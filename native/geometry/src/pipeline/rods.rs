@@ -94,11 +94,19 @@ fn laid(
     progress: &Progress<'_>,
 ) -> Result<FlowedPart, Error> {
     let report = report(&rod, asked.n_quads);
-    let quads = &rod.mesh;
+    let ends = |(v, &p): (usize, &DVec3)| {
+        if v < rod.n_on_rings {
+            p
+        } else {
+            target.bvh().closest(p).position
+        }
+    };
+    let positions = rod.mesh.positions().iter().enumerate().map(ends).collect();
+    let quads = &rod.mesh.with_positions(positions);
     let far = farthest(quads, target);
     let wide = width(quads, rod.n_round);
     let crosses = crosses(quads, asked.n_crosses());
-    let mut deformed = Deformed::laid(rod.mesh, rod.sphere, rod.on_lines, progress)?;
+    let mut deformed = Deformed::laid(quads.clone(), rod.sphere, rod.on_lines, progress)?;
     let mirrored = asked.axis.map(|axis| match images(&deformed.mesh, axis) {
         Some(images) => {
             deformed = even_out(&deformed, &images, axis, target);
@@ -128,7 +136,7 @@ fn report(rod: &Rod, n_wanted: usize) -> flow::Report {
     let count_error = (n_quads as f64 / n_wanted as f64 - 1.0).abs();
     flow::Report {
         n_quads,
-        n_cones: 8,
+        n_cones: n_irregular(&rod.mesh),
         score: Score {
             n_quads,
             count_error,
@@ -140,8 +148,17 @@ fn report(rod: &Rod, n_wanted: usize) -> flow::Report {
         n_thinned: 0,
         n_trials: 0,
         n_stuck: 0,
-        n_creases: [0, 0],
+        n_creases: rod.n_lines,
     }
+}
+
+/// How many vertices have not four quads.
+fn n_irregular(quads: &PolygonMesh) -> usize {
+    let mut valences = vec![0; quads.n_vertices()];
+    for v in quads.corners() {
+        valences[v.index()] += 1;
+    }
+    valences.into_iter().filter(|&n| n != 4).count()
 }
 
 /// How far the farthest point of the surface is from the quads.
@@ -159,7 +176,7 @@ fn width(quads: &PolygonMesh, n_round: usize) -> f64 {
 }
 
 /// The image of every vertex, where each quad has one.
-fn images(quads: &PolygonMesh, axis: usize) -> Option<Vec<VertexId>> {
+pub fn images(quads: &PolygonMesh, axis: usize) -> Option<Vec<VertexId>> {
     let tree = Bvh::of_points(quads.positions());
     let images: Vec<VertexId> = quads
         .positions()
@@ -204,4 +221,71 @@ fn crosses(quads: &PolygonMesh, n: usize) -> Vec<Cross> {
     };
     let step = quads.n_faces().div_ceil(n);
     quads.faces().step_by(step).map(cross).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::elementary::sin_cos;
+    use crate::embed::Solver;
+    use crate::pipeline::report::Mirrored;
+    use crate::pipeline::{Input, PartReport, Settings, remesh};
+    use crate::shapes::{polygons, swept};
+
+    fn made(path: &[DVec3], n: u32, faces: usize) -> (PolygonMesh, PartReport) {
+        let mesh = polygons(&swept(path, 0.5, n));
+        let settings = Settings {
+            faces,
+            ..Settings::default()
+        };
+        let run = remesh(
+            Input::new(&mesh),
+            &settings,
+            &Solver::default(),
+            &Progress::none(),
+        );
+        let run = run.unwrap();
+        let part = run.report.parts[0].clone();
+        let is_rings = matches!(
+            part.flow,
+            Some(Flowed::Used {
+                attempt: Attempt::Rings,
+                ..
+            })
+        );
+        assert!(is_rings, "{:?}", part.flow);
+        assert_eq!(part.deform.n_inverted, 0);
+        assert_eq!(part.deform.n_crossing_left, 0);
+        (run.mesh, part)
+    }
+
+    #[test]
+    fn a_spring_gets_rings_and_none_is_inverted() {
+        let path = (0..70).map(|i| {
+            let angle = f64::from(i) * 0.2;
+            let (sin, cos) = sin_cos(angle);
+            DVec3::new(4.0 * cos, 4.0 * sin, 0.4 * angle)
+        });
+        let path: Vec<DVec3> = path.collect();
+        let (mesh, _) = made(&path, 8, 400);
+        assert!(mesh.n_faces().abs_diff(400) <= 8);
+        for end in [path[0], path[69]] {
+            let distance = |p: &DVec3| p.distance(end);
+            let nearest = mesh.positions().iter().map(distance).fold(9.0, f64::min);
+            assert!(nearest < 0.55, "{nearest}");
+        }
+    }
+
+    #[test]
+    fn a_pole_stays_straight_and_its_own_image() {
+        let (mesh, part) = made(&[DVec3::X * -40.0, DVec3::X * 40.0], 8, 150);
+        assert!(matches!(part.mirrored, Some(Mirrored::Used)));
+        let sides = mesh.positions().iter().filter(|p| p.x.abs() < 39.9);
+        for p in sides {
+            let off = (DVec3::new(0.0, p.y, p.z).length() - 0.5).abs();
+            assert!(off < 1e-6, "{p}");
+        }
+    }
 }

@@ -158,3 +158,33 @@ pub fn torus(n: u32, m: u32) -> TriangleMesh {
     });
     TriangleMesh::new(positions, faces.collect()).expect("a torus is closed")
 }
+
+/// Rings of `n` corners round a path, closed by flat ends.
+pub fn swept(path: &[DVec3], radius: f64, n: u32) -> TriangleMesh {
+    let mut positions = Vec::new();
+    let mut up = DVec3::new(0.1, 0.2, 1.0);
+    for (i, &at) in path.iter().enumerate() {
+        let [from, to] = [i.saturating_sub(1), (i + 1).min(path.len() - 1)].map(|i| path[i]);
+        let way = (to - from).normalize_or(DVec3::X);
+        up = (up - way * up.dot(way)).normalize_or(DVec3::Z);
+        let side = way.cross(up);
+        for k in 0..n {
+            let (sin, cos) = sin_cos(f64::from(k) / f64::from(n) * std::f64::consts::TAU);
+            positions.push(at + (up * cos + side * sin) * radius);
+        }
+    }
+    let mut faces = Vec::new();
+    let last = n * (path.len() as u32 - 1);
+    for k in 0..n {
+        let next = (k + 1) % n;
+        for ring in (0..last).step_by(n as usize) {
+            let [a, b, c, d] = [ring + k, ring + next, ring + n + next, ring + n + k];
+            faces.extend([[a, b, c], [a, c, d]]);
+        }
+        if k > 1 {
+            faces.extend([[0, k, k - 1], [last, last + k - 1, last + k]]);
+        }
+    }
+    let faces = faces.into_iter().map(|f| f.map(VertexId)).collect();
+    TriangleMesh::new(positions, faces).unwrap()
+}

@@ -7,6 +7,8 @@ use crate::elementary::sin_cos;
 use crate::mesh::VertexId;
 use crate::mirror::mirrored;
 
+/// A ring of so many quads is closed by three quads: a rectangle would have no vertex at the tip.
+pub(super) const STAR: usize = 6;
 /// How far from the poles the first and the last ring are, in radians.
 const CAP: f64 = 0.6;
 
@@ -57,7 +59,11 @@ impl Ball {
                 offset,
                 is_high,
             };
-            ball.close(&cap, first, (ring, tip));
+            if n == STAR {
+                ball.close_to_a_point(&cap, first, (ring, tip));
+            } else {
+                ball.close(&cap, first, (ring, tip));
+            }
         }
         ball.on_lines.sort_unstable();
         ball
@@ -82,6 +88,25 @@ impl Ball {
                     self.on_lines.push([at(i, j), at(i + 1, j)].map(VertexId));
                 }
             }
+        }
+    }
+
+    /// Closes a ring of six by three quads round the tip.
+    fn close_to_a_point(&mut self, cap: &Cap, first: usize, (ring, tip): (&Ring, DVec3)) {
+        let n = ring.points.len();
+        let middle = ring.centre();
+        self.positions
+            .push(middle + ring.axis() * ring.axis().dot(tip - middle));
+        self.sphere
+            .push(if cap.is_high { DVec3::Z } else { -DVec3::Z });
+        let top = self.positions.len() as u32 - 1;
+        let at = |i: usize| (first + (i + cap.offset) % n) as u32;
+        for i in (0..n).step_by(2) {
+            let mut quad = [top, at(i), at(i + 1), at(i + 2)];
+            if !cap.is_high {
+                quad.reverse();
+            }
+            self.quads.push(quad);
         }
     }
 
@@ -187,6 +212,9 @@ fn offset(ring: &Ring, [a, b]: [usize; 2], mirror: Option<usize>) -> usize {
     };
     let sum = mirror.and_then(|axis| (0..n).min_by(|&s, &t| off(s, axis).total_cmp(&off(t, axis))));
     let sum = sum.unwrap_or(0);
+    if n == STAR {
+        return sum / 2 % n;
+    }
     let is_even = |o: &usize| {
         let middles = [2 * o + a, 2 * o + 2 * a + b];
         middles.iter().any(|m| m % n == sum) || (a == b && 2 * o % n == sum)

@@ -1,12 +1,12 @@
 //! Sharp lines of a rod: those along it, those round it, and the rims of its ends.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::fine::{Fine, length};
 use super::section::{Profile, Section};
 use crate::groups::Groups;
 use crate::measure::area_vector;
-use crate::mesh::{HalfedgeId, HalfedgeMap, TriangleMesh, VertexId, VertexMap};
+use crate::mesh::{FaceId, HalfedgeId, HalfedgeMap, TriangleMesh, VertexId, VertexMap};
 
 /// A sharp edge lies along the rod where it climbs by this share of its length.
 const STEEP: f64 = 0.5;
@@ -96,13 +96,20 @@ fn bounds(
 
 /// The border of the face of an end, if it is one closed line of sharp edges.
 fn rim(fine: &Fine, end: VertexId, most: f64) -> Option<Vec<VertexId>> {
+    // The end of a face without a vertex inside is one of its border.
+    let mut seeds = fine.mesh.outgoing(end).map(HalfedgeId::face);
+    seeds.find_map(|seed| rim_around(fine, seed, most))
+}
+
+/// The border of the smooth piece around a face, if it is one closed line.
+fn rim_around(fine: &Fine, seed: FaceId, most: f64) -> Option<Vec<VertexId>> {
     let mesh = &fine.mesh;
-    let mut is_in = vec![false; mesh.n_faces()];
-    let mut open: Vec<_> = mesh.outgoing(end).map(HalfedgeId::face).collect();
+    let mut is_in: HashSet<FaceId> = HashSet::new();
+    let mut open = vec![seed];
     let mut border = Vec::new();
     let mut size = 0.0;
     while let Some(face) = open.pop() {
-        if std::mem::replace(&mut is_in[face.0 as usize], true) {
+        if !is_in.insert(face) {
             continue;
         }
         size += area_vector(mesh.triangle(face)).length();
@@ -119,7 +126,7 @@ fn rim(fine: &Fine, end: VertexId, most: f64) -> Option<Vec<VertexId>> {
         }
     }
     // A sharp edge with the face of the end on both its sides is a crease in it.
-    border.retain(|&h| mesh.twin(h).is_some_and(|t| !is_in[t.face().0 as usize]));
+    border.retain(|&h| mesh.twin(h).is_some_and(|t| !is_in.contains(&t.face())));
     border.sort_unstable();
     let next: HashMap<VertexId, VertexId> = border
         .iter()

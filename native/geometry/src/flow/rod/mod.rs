@@ -84,6 +84,10 @@ pub struct Rod {
     pub n_girths: f64,
     /// How many quads go round.
     pub n_round: usize,
+    /// How many vertices lie on rings; the others are those of the ends.
+    pub n_on_rings: usize,
+    /// How many sharp lines there are, and how many of them have edges.
+    pub n_lines: [usize; 2],
 }
 
 /// Why a part got no rings.
@@ -191,6 +195,16 @@ pub fn rod(
         strips,
         n_girths: profile.length() / middle,
         n_round: plan.n_round,
+        n_on_rings: plan.n_round * plan.stops.len(),
+        n_lines: [
+            lines.n_along() + lines.round.len(),
+            order.len()
+                + plan
+                    .stops
+                    .iter()
+                    .filter(|stop| stop.round.is_some())
+                    .count(),
+        ],
     })
 }
 

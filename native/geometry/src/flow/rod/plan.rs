@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::ball::STAR;
 use super::lines::Lines;
 use super::section::{Profile, Section};
 use crate::elementary::ln;
@@ -63,7 +64,7 @@ impl Plan {
         let choices = choices.filter_map(|n| {
             let shares = shared(&gaps, n);
             let cap = cap(n, &shares);
-            let n_rings = n_rings(n, cap, wishes.n_quads)?;
+            let n_rings = n_rings(n, n_ends(n, cap), wishes.n_quads)?;
             let cost = cost(profile, (n, &gaps), &shares, wishes.n_quads);
             Some((cost, n, shares, cap, n_rings))
         });
@@ -125,8 +126,13 @@ fn cap(n: usize, shares: &[usize]) -> [usize; 2] {
     }
 }
 
-fn n_rings(n: usize, [a, b]: [usize; 2], n_quads: usize) -> Option<usize> {
-    let steps = (n_quads.checked_sub(2 * a * b)? as f64 / n as f64).round() as usize;
+/// How many quads close both ends.
+fn n_ends(n: usize, [a, b]: [usize; 2]) -> usize {
+    if n == STAR { STAR } else { 2 * a * b }
+}
+
+fn n_rings(n: usize, n_ends: usize, n_quads: usize) -> Option<usize> {
+    let steps = (n_quads.checked_sub(n_ends)? as f64 / n as f64).round() as usize;
     (steps >= 2).then_some(steps + 1)
 }
 
