@@ -187,7 +187,7 @@ def test_a_sheet_with_solidify_is_closed_and_done(open_fixture: Open) -> None:
     points = [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)]
     thing.data.from_pydata(points, [], [(0, 1, 2, 3)])
     thing.modifiers.new("Solidify", "SOLIDIFY").thickness = 0.5
-    press.orbflow_remesh(faces=200)
+    press.orbflow_remesh(faces=100)
     assert stack(thing) == []
     assert is_closed(thing.data)
     assert np.ptp(places(thing.data), axis=0) == pytest.approx((2, 2, 0.5), abs=0.06)
