@@ -147,7 +147,7 @@ impl Error {
         let place = place.clone();
         match cause {
             pipeline::Error::Refused { kept, .. } => {
-                let mut lines = parts::lines(&kept);
+                let mut lines = parts::lines(&kept, "nothing was written");
                 if let Some(first) = lines.first_mut() {
                     *first = format!("{place}: {first}");
                 }

@@ -48,13 +48,13 @@ impl Parts {
 
 /// Says on standard error which parts were not remeshed, where they are and why.
 pub fn tell(place: &Place, kept: &[Kept]) {
-    for line in lines(kept) {
+    for line in lines(kept, "left as before") {
         eprintln!("{place}: {line}");
     }
 }
 
 /// A line for each reason of parts that cannot be done, and one for all that are small.
-pub fn lines(kept: &[Kept]) -> Vec<String> {
+pub fn lines(kept: &[Kept], what: &str) -> Vec<String> {
     let (small, bad): (Vec<_>, Vec<_>) = kept.iter().partition(|kept| kept.is_small());
     let reasons = bad.iter().flat_map(|kept| {
         kept.reasons.iter().map(|reason| {
@@ -72,7 +72,7 @@ pub fn lines(kept: &[Kept]) -> Vec<String> {
     if !bad.is_empty() {
         let faces: usize = bad.iter().map(|kept| kept.n_faces).sum();
         let [parts, faces] = [count(bad.len(), "part"), count(faces, "face")];
-        lines.push(format!("{parts} with {faces} cannot be done"));
+        lines.push(format!("{parts} with {faces} cannot be done: {what}"));
     }
     lines.extend(told_of_small(&small));
     lines

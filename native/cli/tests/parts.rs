@@ -45,7 +45,7 @@ fn parts_that_stay_are_named_with_reason_and_place() {
     assert!(
         lines
             .iter()
-            .any(|line| line.ends_with("1 part with 1 face cannot be done"))
+            .any(|line| line.ends_with("1 part with 1 face cannot be done: left as before"))
     );
     let text = fs::read_to_string(&report).unwrap();
     let report: Value = serde_json::from_str(&text).unwrap();

@@ -15,7 +15,7 @@ use super::Apart;
 use super::scale::Scale;
 use super::weld::bits;
 use crate::groups::Groups;
-use crate::mesh::{FaceId, HalfedgeId, Id, PolygonMesh, bounds};
+use crate::mesh::{FaceId, HalfedgeId, Id, PolygonMesh, VertexId, bounds};
 use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
 
@@ -116,21 +116,23 @@ impl Borders {
                 points.len() as u32 - 1
             });
         }
-        let name = |p: DVec3| names.get(&p.to_array().map(bits)).copied();
+        let name = |p: &DVec3| names.get(&p.to_array().map(bits)).copied();
+        let of_vertices: Vec<Option<u32>> = match points.len() {
+            0 => Vec::new(),
+            _ => input.positions().iter().map(name).collect(),
+        };
         let mut faces = vec![Vec::new(); points.len()];
-        if !points.is_empty() {
-            for face in input.face_ids() {
-                for &v in input.face(face) {
-                    if let Some(point) = name(input.position(v)) {
-                        faces[point as usize].push(face);
-                    }
-                }
+        for face in input.face_ids().filter(|_| !points.is_empty()) {
+            for point in input
+                .face(face)
+                .iter()
+                .filter_map(|v| of_vertices[v.index()])
+            {
+                faces[point as usize].push(face);
             }
         }
-        let edges = edges
-            .iter()
-            .map(|ends| ends.map(|v| name(input.position(v)).unwrap_or(0)));
-        let edges: Vec<[u32; 2]> = edges.collect();
+        let named = |v: VertexId| of_vertices[v.index()].expect("every end is a point");
+        let edges: Vec<[u32; 2]> = edges.iter().map(|ends| ends.map(named)).collect();
         Self {
             scaled: points.iter().map(|&p| scale.point(p)).collect(),
             groups: Groups::new(points.len()),
@@ -151,12 +153,13 @@ impl Borders {
         let middles: Vec<DVec3> = self.edges.iter().map(middle).collect();
         let tree = Bvh::build_of_points(&middles, progress)?;
         let mut pairs = Vec::new();
-        let box_reach = DVec3::splat(reach);
         for (i, &p) in middles.iter().enumerate() {
             progress.check()?;
-            tree.visit_overlaps(p - box_reach, p + box_reach, |other| {
+            let [a, b] = self.edges[i].map(|p| self.at(p));
+            let reach = DVec3::splat(reach.min(OF_EDGE * a.distance(b)));
+            tree.visit_overlaps(p - reach, p + reach, |other| {
                 if other.index() > i {
-                    pairs.extend(self.pair([i as u32, other.0], reach));
+                    pairs.extend(self.pair([i as u32, other.0], reach.x));
                 }
             });
         }

@@ -57,6 +57,7 @@ pub use warning::{Fault, Warning};
 
 use glam::DVec3;
 
+use crate::clean::Apart;
 use crate::embed::OffsetPredictor;
 use crate::mesh::{PolygonMesh, VertexId};
 use crate::nearest::Bvh;
@@ -65,14 +66,12 @@ use crate::{clean, measure, transfer};
 use clock::Clock;
 use density::Density;
 use each::Common;
-use even::Marked;
 use frame::Prepared;
 use join::Joined;
 use marks::Marks;
-use scored::Scored;
+use scored::{judge, sound};
 use split::Parts;
 use stay::{Elements, Staying};
-use warning::Made;
 
 /// The version of Orbflow.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -166,16 +165,13 @@ fn run(
 ) -> Result<Remeshed, Error> {
     let mut clock = Clock::default();
     let stage = progress.part("clean", 0.0, 0.02);
-    let apart = || clean::take_apart(given.mesh, settings.weld, &stage);
-    let mut apart = clock.step("clean", apart)?;
-    let moved = apart.moved.take();
-    let moved = moved.map(|places| given.mesh.with_positions(places));
+    let apart = || taken_apart(given.mesh, settings.weld, &stage);
+    let (apart, moved) = clock.step("clean", apart)?;
     let mesh = moved.as_ref().unwrap_or(given.mesh);
     let input = Input { mesh, ..given };
     let sort = || Parts::new(&input, apart, settings, &stage);
     let (mut parts, cleaned) = clock.step("split", sort)?;
-    let marked = parts.on_done(mesh, given.marked);
-    let marked: Vec<_> = marked.into_iter().map(|i| given.marked[i]).collect();
+    let marked = parts.marked_on_done(&input);
     let input = Input {
         marked: &marked,
         ..input
@@ -199,20 +195,13 @@ fn run(
     let stayed = (&parts, &staying);
     let carrying = || elements(&input, (&prepared, plane), &mut joined, stayed, &stage);
     let (mut made, carried) = clock.step("transfer", carrying)?;
-    let stage = progress.part("score", 0.92, 1.0);
-    let lost_marks = lost_marks(&prepared, (mesh, &marked), &joined, progress)?;
-    let old = parts.done_alone(given.mesh);
-    let against = (old.as_ref().unwrap_or(given.mesh), &prepared);
-    let scored = Scored::new(against, &made.mesh, settings, (&mut clock, &stage))?;
-    let faults = Made {
-        mesh: &made.mesh,
-        parts: &joined.parts,
-        plane,
-        diagonal: prepared.frame.grow(DVec3::X).x,
-        glance: scored.glance,
-        lost_marks,
-    };
-    let warnings = warning::warnings(&faults, settings, progress)?;
+    let judged = judge(
+        (given.mesh, &parts),
+        (&prepared, plane),
+        (mesh, &marked),
+        (&made.mesh, &joined),
+        (settings, &mut clock, &progress.part("score", 0.92, 1.0)),
+    )?;
     staying.append(&given, &mut made);
     let report = Report {
         version: VERSION,
@@ -225,40 +214,27 @@ fn run(
         parts: joined.parts,
         kept: parts.kept,
         carried,
-        score: scored.score,
-        score_refused: scored.refused,
-        warnings,
+        score: judged.score,
+        score_refused: judged.refused,
+        warnings: judged.warnings,
         steps: clock.into_steps(),
         peak_memory_mb: peak_memory_mb(),
     };
     progress.at(1.0)?;
-    if settings.strict && report.warnings.iter().any(|warning| warning.grave) {
-        let warnings = report.warnings.clone();
-        let report = Box::new(report);
-        return Err(Error::Unsound { warnings, report });
-    }
-    Ok(Remeshed {
-        mesh: made.mesh,
-        materials: made.materials,
-        sphere: made.sphere,
-        carried: made.carried,
-        origins: made.origins,
-        crosses,
-        kept_faces: staying.n_faces(),
-        report,
-    })
+    let report = sound(report, settings)?;
+    Ok(made.told(crosses, staying.n_faces(), report))
 }
 
-/// The share of the marked edges that no edge lies along.
-fn lost_marks(
-    prepared: &Prepared,
-    marked: (&PolygonMesh, &[[VertexId; 2]]),
-    joined: &Joined,
+/// The parts of a mesh, and the mesh with its seams closed, where there are any.
+fn taken_apart(
+    mesh: &PolygonMesh,
+    weld: Option<f64>,
     progress: &Progress<'_>,
-) -> Result<f64, Cancelled> {
-    let marks = Marks::new(marked, &prepared.frame);
-    let marked = Marked::new(&prepared.mesh, &marks.on(&prepared.mesh));
-    marked.lost((&joined.mesh, &joined.features), progress)
+) -> Result<(Apart, Option<PolygonMesh>), clean::Error> {
+    let mut apart = clean::take_apart(mesh, weld, progress)?;
+    let moved = apart.moved.take();
+    let moved = moved.map(|places| mesh.with_positions(places));
+    Ok((apart, moved))
 }
 
 /// What was made, with the artist's data on it, and what became of edges that were to be carried.

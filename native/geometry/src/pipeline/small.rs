@@ -80,9 +80,9 @@ pub fn mark(parts: &mut [Part], mesh: &PolygonMesh, amounts: &[f64], settings: &
         };
         let share = settings.faces as f64 * amount / total;
         if share < least as f64 {
+            let faces = settings.faces;
             let text = format!(
-                "its share is {share:.2} of {} faces; {least} are the fewest that close it",
-                settings.faces
+                "its share is {share:.1e} of {faces} faces; {least} are the fewest that close it"
             );
             let size_pct = size_pct(part);
             part.is_small(mesh, (Some(share), size_pct), text);

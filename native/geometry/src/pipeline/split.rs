@@ -222,6 +222,12 @@ impl Parts {
         (0..edges.len()).filter(lies_there).collect()
     }
 
+    /// The marked edges of the input that do.
+    pub fn marked_on_done(&self, input: &Input<'_>) -> Vec<[VertexId; 2]> {
+        let which = self.on_done(input.mesh, input.marked).into_iter();
+        which.map(|i| input.marked[i]).collect()
+    }
+
     /// The faces of the input that are remeshed, where these are not all.
     pub fn done_alone(&self, mesh: &PolygonMesh) -> Option<PolygonMesh> {
         (!self.kept.is_empty()).then(|| some_faces(mesh, |face| self.is_done(face)))

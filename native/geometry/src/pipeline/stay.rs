@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::frame::Frame;
 use super::origins::{Origin, Origins};
-use super::{CarriedEdge, Input};
+use super::{CarriedEdge, Cross, Input, Remeshed, Report};
 use crate::mesh::{FaceId, Id, PolygonMesh, VertexId};
 
 /// What goes out, element by element.
@@ -16,6 +16,22 @@ pub struct Elements {
     pub sphere: Vec<DVec3>,
     pub carried: Vec<CarriedEdge>,
     pub origins: Option<Origins>,
+}
+
+impl Elements {
+    /// With what is told of them.
+    pub fn told(self, crosses: Vec<Cross>, kept_faces: usize, report: Report) -> Remeshed {
+        Remeshed {
+            mesh: self.mesh,
+            materials: self.materials,
+            sphere: self.sphere,
+            carried: self.carried,
+            origins: self.origins,
+            crosses,
+            kept_faces,
+            report,
+        }
+    }
 }
 
 /// The faces that stay, in order, and the vertices that they use.

@@ -9,7 +9,9 @@ use super::join::join_embeddings;
 use super::part::embed_mesh;
 use super::settings::check_faces;
 use super::split::{Parts, components};
-use super::{Error, Input, Mirror, VERSION, share_of_work, thread_pool, transfer_materials};
+use super::{
+    Error, Input, Mirror, VERSION, share_of_work, taken_apart, thread_pool, transfer_materials,
+};
 use crate::embed::OffsetPredictor;
 use crate::measure::{self, Topology};
 use crate::mesh::PolygonMesh;
@@ -66,10 +68,8 @@ fn embed_parts(
 ) -> Result<EmbeddedParts, Error> {
     let mut clock = Clock::default();
     let stage = progress.part("clean", 0.0, 0.02);
-    let apart = || clean::take_apart(mesh, Some(clean::WELD), &stage);
-    let mut apart = clock.step("clean", apart)?;
-    let moved = apart.moved.take();
-    let moved = moved.map(|places| mesh.with_positions(places));
+    let apart = || taken_apart(mesh, Some(clean::WELD), &stage);
+    let (apart, moved) = clock.step("clean", apart)?;
     let cleaned = Parts::all(mesh, apart)?;
     let input = Input::new(moved.as_ref().unwrap_or(mesh));
     let (prepared, _) = Prepared::facing(cleaned, &input, Mirror::Off, &stage)?;
