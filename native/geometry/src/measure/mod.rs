@@ -4,6 +4,7 @@
 //! that they drop out of sums instead of poisoning them.
 
 mod curvature;
+mod features;
 mod polygon_edges;
 mod polyline;
 mod sharp;
@@ -15,6 +16,7 @@ use crate::elementary::atan2;
 use crate::mesh::{FaceId, FaceMap, HalfedgeId, TriangleMesh, VertexMap};
 
 pub use curvature::{Curvature, CurvatureField, principal_curvatures};
+pub use features::{FeatureLine, feature_lines, loose_share};
 pub use polygon_edges::PolygonEdges;
 pub use polyline::{Polyline, Seam};
 pub use sharp::sharp_edges;
