@@ -10,6 +10,7 @@ use glam::DVec3;
 use super::follow::{Follower, Stars, walk};
 use super::project::lift_towards;
 use super::sheet::Sheet;
+use super::untangle::{grown, smooth};
 use crate::measure::Seam;
 use crate::mesh::VertexId;
 use crate::progress::{Cancelled, Progress};
@@ -26,6 +27,11 @@ const LEAST_QUALITY: f64 = 0.2;
 const GUARDED_QUALITY: f64 = 0.7;
 /// Share of its way along the line that a vertex goes at once.
 const DAMPING: f64 = 0.5;
+/// Share of the way to the middle between its neighbours that it goes besides where the line is bent:
+/// long edges would cut off more than their share of a rim.
+const EVENNESS: f64 = 0.5;
+/// A line is bent whose ends are nearer to each other than this share of its length.
+const STRAIGHT: f64 = 0.98;
 /// A vertex stays this share of the way to its neighbours on the line away from these.
 const ROOM: f64 = 0.4;
 
@@ -36,6 +42,8 @@ pub(super) struct Seams {
 
 struct Track {
     seam: Seam,
+    /// Whether the line is no straight one.
+    is_bent: bool,
     /// Which vertices stand on the line.
     is_there: Vec<bool>,
 }
@@ -70,11 +78,11 @@ impl Seams {
         Ok(seams)
     }
 
-    /// Moves vertices along their lines to where their neighbours want them, and on towards the
-    /// lines those that are not there.
-    pub fn slide(&mut self, sheet: &mut Sheet, stars: &Stars) {
+    /// Moves vertices along their lines to where their neighbours want them, evenly along bent ones
+    /// where that is asked for, and on towards the lines those that are not there.
+    pub fn slide(&mut self, sheet: &mut Sheet, stars: &Stars, is_even: bool) {
         for track in &mut self.tracks {
-            track.slide(sheet, stars);
+            track.slide(sheet, stars, is_even);
         }
         self.step(sheet);
         self.pin(sheet);
@@ -94,6 +102,22 @@ impl Seams {
                 sheet.unpin(v);
             }
         }
+    }
+
+    /// Sets every vertex onto its line in space, whatever its sphere point says, and what is around
+    /// those that had not arrived between them.
+    pub fn force(&self, sheet: &mut Sheet) {
+        let mut moved = Vec::new();
+        for track in &self.tracks {
+            for (&v, &at) in track.seam.vertices.iter().zip(&track.seam.at) {
+                if !sheet.is_pinned(v) {
+                    sheet.lift(v, track.seam.line.point(at));
+                    sheet.pin(v);
+                    moved.push(v);
+                }
+            }
+        }
+        smooth(sheet, &grown(sheet, moved, 1));
     }
 
     /// Pins those vertices alone that are on their lines.
@@ -143,8 +167,11 @@ fn shove(sheet: &mut Sheet, v: VertexId, way: DVec3) {
 
 impl Track {
     fn new(seam: Seam) -> Self {
+        let length = seam.line.length();
+        let chord = seam.line.point(0.0).distance(seam.line.point(length));
         Self {
             is_there: vec![false; seam.vertices.len()],
+            is_bent: seam.line.is_closed() || chord < STRAIGHT * length,
             seam,
         }
     }
@@ -172,7 +199,7 @@ impl Track {
         false
     }
 
-    fn slide(&mut self, sheet: &mut Sheet, stars: &Stars) {
+    fn slide(&mut self, sheet: &mut Sheet, stars: &Stars, is_even: bool) {
         let n = self.n() - 1;
         let whole = self.seam.line.length();
         for i in usize::from(!self.seam.line.is_closed())..n {
@@ -195,7 +222,12 @@ impl Track {
             let star = stars.of(v);
             let sum: DVec3 = star.iter().map(|&u| sheet.position(u)).sum();
             let pull = (sum / star.len() as f64 - sheet.position(v)).dot(tangent);
-            let at = now + (DAMPING * pull).clamp(-gap.max(0.0), gap.max(0.0));
+            let even = if is_even && self.is_bent {
+                EVENNESS * (f64::midpoint(before, ahead) - now)
+            } else {
+                0.0
+            };
+            let at = now + (DAMPING * pull + even).clamp(-gap.max(0.0), gap.max(0.0));
             if self.move_to(sheet, v, at) {
                 self.set(i, at);
             }

@@ -15,7 +15,6 @@
 //! Not done here: choosing the primitive (`sphere`), proving that faces do not cross in space.
 
 mod cover;
-mod features;
 mod flips;
 mod follow;
 mod least_squares;
@@ -149,15 +148,16 @@ pub fn deform(
         None => settings.n_relaxations,
         Some(_) => settings.n_quad_relaxations,
     };
-    slide_and_flip(
-        &mut sheet,
-        cover.as_mut(),
-        (n, settings.sizes, &mut report),
-        &progress.part("", 0.0, 0.5),
-    )?;
+    if !settings.is_on_lines {
+        slide_and_flip(
+            &mut sheet,
+            cover.as_mut(),
+            (n, settings.sizes, &mut report),
+            &progress.part("", 0.0, 0.5),
+        )?;
+    }
     let part = progress.part("", 0.5, 0.6);
-    let [n_goals, n_pinned] =
-        snap::snap(&mut sheet, cover.as_mut(), (target, settings.sizes), &part)?;
+    let [n_goals, n_pinned] = snap::snap(&mut sheet, cover.as_mut(), (target, settings), &part)?;
     (report.n_feature_goals, report.n_feature_vertices) = (n_goals, n_pinned);
     if n_goals > 0 {
         let part = progress.part("", 0.6, 0.7);
@@ -307,33 +307,65 @@ pub fn deform_flow(
         let [from, to] = [round, round + n].map(|r| 0.1 + 0.5 * r as f64 / n_rounds as f64);
         let part = progress.part("", from, to);
         report.n_stuck = follower.follow(&mut sheet, n, &part)?;
-        seams.slide(&mut sheet, follower.stars());
+        seams.slide(&mut sheet, follower.stars(), settings.is_on_lines);
     }
     seams.release_bad(&mut sheet);
     [report.n_feature_goals, report.n_feature_vertices] = seams.counts(&sheet);
-    let edge = sheet.mean_edge();
-    report.n_unprojected = project::project(&mut sheet, target, edge, progress)?;
-    reach::reach(&mut sheet, (target, Span::MISSED), progress)?;
-    let fit = Fit {
+    let finish = Finish {
         target,
-        reach: sheet.mean_edge(),
-        anchor: settings.flow_anchor,
-        sites: &sites::spread(target, SITES_PER_QUAD * sheet.faces().len()),
-        squareness: settings.squareness * (1.0 - OWN_SIZE * settings.evenness),
-        even: (settings.evenness > 0.0).then_some(Even {
-            crosses: flowing.crosses,
-            springs: settings.evenness,
-            squares: MEAN_SIZE * settings.squareness * settings.evenness,
-        }),
+        settings,
+        crosses: flowing.crosses,
+        progress: &progress.part("", 0.7, 1.0),
     };
-    let part = progress.part("", 0.7, 1.0);
-    fit.straddle(&mut sheet, settings.n_flow_straddles, &part)?;
-    [report.n_knotted, report.n_opened] = untangle::untangle(&mut sheet, progress)?;
-    reach::reach(&mut sheet, (target, Span::LEFT), progress)?;
-    if settings.separates {
-        [report.n_crossing, report.n_crossing_left] = separate::separate(&mut sheet, progress)?;
+    if settings.is_on_lines && report.n_feature_vertices < report.n_feature_goals {
+        let mut forced = sheet.clone();
+        seams.force(&mut forced);
+        let mut done = report;
+        finish.fit(&mut forced, &mut done)?;
+        if untangle::worse_than(&forced, 0.0).is_empty() && done.n_crossing_left == 0 {
+            done.n_feature_vertices = done.n_feature_goals;
+            return Ok(Deformed::new(forced, done));
+        }
     }
+    finish.fit(&mut sheet, &mut report)?;
     Ok(Deformed::new(sheet, report))
+}
+
+/// The last steps of quads that flow, in space.
+struct Finish<'a> {
+    target: &'a Target,
+    settings: &'a Settings,
+    crosses: &'a FaceMap<DVec3>,
+    progress: &'a Progress<'a>,
+}
+
+impl Finish<'_> {
+    /// Fits quads that were relaxed to the target and mends what that spoils; pinned vertices stay.
+    fn fit(&self, sheet: &mut Sheet, report: &mut Report) -> Result<(), Cancelled> {
+        let (target, settings, progress) = (self.target, self.settings, self.progress);
+        let edge = sheet.mean_edge();
+        report.n_unprojected = project::project(sheet, target, edge, progress)?;
+        reach::reach(sheet, (target, Span::MISSED), progress)?;
+        let fit = Fit {
+            target,
+            reach: sheet.mean_edge(),
+            anchor: settings.flow_anchor,
+            sites: &sites::spread(target, SITES_PER_QUAD * sheet.faces().len()),
+            squareness: settings.squareness * (1.0 - OWN_SIZE * settings.evenness),
+            even: (settings.evenness > 0.0).then_some(Even {
+                crosses: self.crosses,
+                springs: settings.evenness,
+                squares: MEAN_SIZE * settings.squareness * settings.evenness,
+            }),
+        };
+        fit.straddle(sheet, settings.n_flow_straddles, progress)?;
+        [report.n_knotted, report.n_opened] = untangle::untangle(sheet, progress)?;
+        reach::reach(sheet, (target, Span::LEFT), progress)?;
+        if settings.separates {
+            [report.n_crossing, report.n_crossing_left] = separate::separate(sheet, progress)?;
+        }
+        Ok(())
+    }
 }
 
 impl Flowing<'_> {

@@ -5,8 +5,8 @@ use std::collections::BinaryHeap;
 
 use glam::DVec3;
 
-use super::features::FeatureLine;
 use super::sheet::Sheet;
+use crate::measure::FeatureLine;
 use crate::mesh::{VertexId, VertexMap};
 use crate::nearest::Bvh;
 

@@ -10,6 +10,10 @@ use super::Anchor;
 pub struct Settings {
     /// What faces are evened out to while vertices slide; quads that flow have sizes of their own.
     pub sizes: Sizes,
+    /// Whether the target is a solid. Vertices of triangles lie along its lines already, short ones too:
+    /// they are set onto them before anything slides. Those of quads that flow are set onto their lines
+    /// whatever is in the way, and spread evenly along bent ones.
+    pub is_on_lines: bool,
     /// How often every vertex of a mesh of triangles slides. Fewer leave uneven faces, more cost
     /// time for little.
     pub n_relaxations: usize,
@@ -51,6 +55,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             sizes: Sizes::Equal,
+            is_on_lines: false,
             n_relaxations: 4,
             n_quad_relaxations: 0,
             n_flow_relaxations: 40,

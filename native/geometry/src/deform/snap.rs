@@ -9,14 +9,14 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use super::Sizes;
+use super::Settings;
 use super::cover::Cover;
-use super::features::FeatureLine;
 use super::project::lift_towards;
 use super::relax::relax;
 use super::route::Router;
 use super::sheet::Sheet;
 use super::target::Target;
+use crate::measure::FeatureLine;
 use crate::mesh::{FaceId, VertexId, VertexMap};
 use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
@@ -43,14 +43,17 @@ struct Goal {
 pub(super) fn snap(
     sheet: &mut Sheet,
     mut cover: Option<&mut Cover>,
-    (target, sizes): (&Target, Sizes),
+    (target, settings): (&Target, &Settings),
     progress: &Progress,
 ) -> Result<[usize; 2], Cancelled> {
     let edge = sheet.mean_edge();
-    let lines = target
-        .features()
-        .iter()
-        .filter(|line| line.length() > SHORTEST * edge);
+    let shortest = if settings.is_on_lines {
+        0.0
+    } else {
+        SHORTEST * edge
+    };
+    let lines = target.features().iter();
+    let lines = lines.filter(|line| line.length() > shortest);
     let mut plan = Plan::new(sheet, edge);
     for line in lines {
         progress.check()?;
@@ -71,7 +74,7 @@ pub(super) fn snap(
         relax(
             sheet,
             cover.as_deref_mut(),
-            (1, sizes),
+            (1, settings.sizes),
             &progress.part("", step as f64 / N_STEPS as f64, 1.0),
         )?;
     }

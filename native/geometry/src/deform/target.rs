@@ -2,8 +2,7 @@
 
 use glam::DVec3;
 
-use super::features::{FeatureLine, feature_lines};
-use crate::measure::{face_normals, sharp_edges};
+use crate::measure::{FeatureLine, face_normals, feature_lines, sharp_edges};
 use crate::mesh::{FaceId, FaceMap, HalfedgeMap, TriangleMesh, VertexId};
 use crate::nearest::{Bvh, Closest};
 use crate::progress::{Cancelled, Progress};

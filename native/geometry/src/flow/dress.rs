@@ -4,10 +4,10 @@ use std::f64::consts::PI;
 
 use glam::DVec2;
 
-use super::creases::{self, Line};
+use super::creases::{self, Line, Network};
 use super::field::{self, OrientationField};
 use super::mirror::{Plan, plan, plane_edges, straighten};
-use super::quads::{Error, Guides, Settings};
+use super::quads::{Creases, Error, Guides, Settings};
 use super::singularities::tidy;
 use super::wish::wish;
 use crate::measure::{sharp_edges, total_area};
@@ -21,7 +21,7 @@ pub(super) struct Dressed {
     pub wish: HalfedgeMap<DVec2>,
     /// The edges that quads should lie along but for marked ones and those in the plane.
     sharp: HalfedgeMap<bool>,
-    /// What to keep to: all lines, if the sharp ones are clear; those of marked edges alone, if
+    /// What to keep to: of a solid all lines; else all, if the sharp ones are clear; those of marked edges alone, if
     /// there are any; no lines.
     pub plans: Vec<Plan>,
 }
@@ -54,7 +54,10 @@ pub(super) fn dress(
         Some(doubled) => either(lines, &plane_edges(doubled)),
         None => lines.clone(),
     };
-    let all = either(&sharp_edges(mesh, sharp_angle), guides.lines);
+    let all = match settings.creases {
+        Creases::All => guides.lines.clone(),
+        Creases::Long => either(&sharp_edges(mesh, sharp_angle), guides.lines),
+    };
     let along = plane(&all);
     let both = all.iter().zip(guides.marked);
     let sharp: HalfedgeMap<bool> = both
@@ -70,6 +73,10 @@ pub(super) fn dress(
     mirror(&mut field);
     tidy(mesh, &mut field, sizes);
     mirror(&mut field);
+    let network = match settings.creases {
+        Creases::All => Some(network(mesh, (&all, &along), guides)?),
+        Creases::Long => None,
+    };
     let h = (total_area(mesh) / settings.n_quads.max(1) as f64).sqrt();
     let lines = creases::lines(mesh, &field, &along, h).into_iter();
     let on_lines = lines.map(|line| line.length_of(mesh, |h| sharp[*h])).sum();
@@ -77,7 +84,10 @@ pub(super) fn dress(
     if creases::are_clear(mesh, &sharp, on_lines) {
         kept.insert(0, &all);
     }
-    creases::attract(mesh, &mut field, kept[0], sizes);
+    match &network {
+        Some(network) => network.settle(&mut field),
+        None => creases::attract(mesh, &mut field, kept[0], sizes),
+    }
     mirror(&mut field);
     let part = progress.part("", 0.5, 0.7);
     field::settle_along(mesh, &mut field, (&pull, &along), &part)?;
@@ -87,15 +97,35 @@ pub(super) fn dress(
     let kept = kept
         .into_iter()
         .filter(|kept| kept.iter().any(|&is_line| is_line));
-    let lines = kept.map(lines).chain([Vec::new()]);
-    Ok(Dressed {
-        plans: lines
+    let plans = if network.is_some() {
+        let lines = creases::whole_lines(mesh, &field, &along, h);
+        vec![Plan {
+            is_firm: true,
+            ..planned(guides.mirror, &field, lines)
+        }]
+    } else {
+        let lines = kept.map(lines).chain([Vec::new()]);
+        lines
             .map(|lines| planned(guides.mirror, &field, lines))
-            .collect(),
+            .collect()
+    };
+    Ok(Dressed {
+        plans,
         field,
         wish,
         sharp,
     })
+}
+
+/// The network of all lines, and of the edges in the plane where there is one.
+fn network<'a>(
+    mesh: &'a TriangleMesh,
+    (all, along): (&HalfedgeMap<bool>, &'a HalfedgeMap<bool>),
+    guides: Guides<'a>,
+) -> Result<Network<'a>, Error> {
+    let has_lines = all.iter().any(|&is_line| is_line);
+    let network = has_lines.then(|| Network::new(mesh, along, guides.mirror));
+    network.flatten().ok_or(Error::NoSolid)
 }
 
 /// What to keep to with some lines of sharp edges.
@@ -106,6 +136,7 @@ fn planned(mirror: Option<&Doubled>, field: &OrientationField, beside: Vec<Line>
             plane: Vec::new(),
             beside,
             pairs: Vec::new(),
+            is_firm: false,
         },
     }
 }

@@ -36,4 +36,4 @@ pub mod strips;
 mod thin;
 pub mod wish;
 
-pub use quads::{Error, Flow, Guides, Report, Settings, flow};
+pub use quads::{Creases, Error, Flow, Guides, Report, Settings, flow};

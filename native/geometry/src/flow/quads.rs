@@ -34,10 +34,22 @@ pub struct Settings {
     pub sizes: sizes::Settings,
     /// Edges sharper than this, in radians, get edges of quads along them; none: no edge does.
     pub sharp_angle: Option<f64>,
+    /// Which of those edges are followed.
+    pub creases: Creases,
     /// How long whole periods are searched, and what makes them good.
     pub search: search::Settings,
     /// Whether more quads will do, because strips of them are to be taken out: see [`Flow::thinned`].
     pub may_exceed: bool,
+}
+
+/// Which sharp edges get edges of quads along them.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Creases {
+    /// Lines of some length, if most of what is sharp lies on them.
+    Long,
+    /// All of a solid's, however short: corners are vertices with as many quads as fit there. The
+    /// number of quads may be an eighth off for it.
+    All,
 }
 
 impl Settings {
@@ -48,6 +60,7 @@ impl Settings {
             field: field::Settings::default(),
             sizes: sizes::Settings::default(),
             sharp_angle: Some(40f64.to_radians()),
+            creases: Creases::Long,
             search: search::Settings::default(),
             may_exceed: false,
         }
@@ -136,6 +149,17 @@ pub enum Error {
         /// How many halfedges that are.
         n_doubled: usize,
     },
+    /// Not all creases of a solid have edges along them.
+    #[error("edges lie along {n_met} of {n_lines} lines of sharp edges")]
+    Creases {
+        /// How many have.
+        n_met: usize,
+        /// How many there are.
+        n_lines: usize,
+    },
+    /// The creases are no solid's: none are there, or many end loosely.
+    #[error("sharp edges make no solid")]
+    NoSolid,
     /// The grid is not its own image in the plane of symmetry.
     #[error("the grid is not its own image in the plane")]
     Uneven,
@@ -148,6 +172,16 @@ pub enum Error {
         n_wanted: usize,
     },
 }
+
+/// The weight of the count where creases leave few to choose from: as dear as elsewhere, a cube of 6 n²
+/// quads would be twisted rather than be a few quads off.
+const COUNT_OF_SOLIDS: f64 = 6.0;
+
+/// Along all creases of a solid the number of quads may be off by one in so many: a cube has 6 n².
+/// With less room lines are given up, and corners are cut.
+const SLACK: usize = 8;
+/// Or by this many, where few are asked for: four stairs need 36.
+const LEAST_SLACK: usize = 30;
 
 /// Lifts a pass's cancellation to that of the whole.
 macro_rules! lift {
@@ -236,7 +270,7 @@ fn search(
 ) -> Result<Laid, Error> {
     let mesh = map.mesh();
     let worn = (&dressed.field, &dressed.wish);
-    let (last, lined) = dressed.plans.split_last().expect("one plan has no lines");
+    let (last, lined) = dressed.plans.split_last().expect("there is a plan");
     let lay_plan = |plan: &Plan, progress: &Progress| {
         let [part, ends] = [(0.0, 0.9), (0.9, 1.0)].map(|(from, to)| progress.part("", from, to));
         let whole = whole(mesh, worn, plan, settings, &part)?;
@@ -256,7 +290,14 @@ fn search(
         }
         from = to;
     }
-    lay_plan(last, &progress.part("", from, 1.0))
+    let laid = lay_plan(last, &progress.part("", from, 1.0))?;
+    match laid.is_met.iter().filter(|is_met| **is_met).count() {
+        n_met if last.is_firm && n_met < laid.is_met.len() => Err(Error::Creases {
+            n_met,
+            n_lines: laid.is_met.len(),
+        }),
+        _ => Ok(laid),
+    }
 }
 
 /// The grid of whole periods, with the ends of lines among its vertices.
@@ -274,20 +315,29 @@ fn whole(
     for &end in plan.lines().flat_map(|line| &line.ends) {
         is_wanted[end] = true;
     }
-    let complex = keep_cones(complex, &is_wanted, &progress.part("", 0.2, 0.25))?;
+    let mut complex = keep_cones(complex, &is_wanted, &progress.part("", 0.2, 0.25))?;
     let part = progress.part("", 0.25, 1.0);
-    let whole = quantise(complex, settings.n_quads, &settings.search, &part)?;
-    check(&whole, settings)?;
+    let mut search = settings.search;
+    if plan.is_firm {
+        search.weights.count = COUNT_OF_SOLIDS;
+        complex.chains.firm = plan.lines().map(|line| line.kept_ends(&complex)).collect();
+    }
+    let whole = quantise(complex, settings.n_quads, &search, &part)?;
+    check(&whole, (settings, plan.is_firm))?;
     Ok(whole)
 }
 
-fn check(whole: &Quantised, settings: &Settings) -> Result<(), Error> {
+fn check(whole: &Quantised, (settings, is_firm): (&Settings, bool)) -> Result<(), Error> {
     let n_doubled = whole.report.score.n_doubled;
     if n_doubled > 0 {
         return Err(Error::Doubled { n_doubled });
     }
     let [n_quads, n_wanted] = [whole.grid.quads.len(), settings.n_quads];
-    let tolerance = tolerance(n_wanted);
+    let tolerance = if is_firm {
+        (n_wanted / SLACK).max(LEAST_SLACK)
+    } else {
+        tolerance(n_wanted)
+    };
     let is_too_many = n_quads > n_wanted + tolerance && !settings.may_exceed;
     if is_too_many || n_quads + tolerance < n_wanted {
         return Err(Error::Count { n_quads, n_wanted });

@@ -5,6 +5,7 @@
 
 mod curvature;
 mod ears;
+mod features;
 mod polygon_edges;
 mod polyline;
 mod sharp;
@@ -17,6 +18,7 @@ use crate::mesh::{FaceId, FaceMap, HalfedgeId, TriangleMesh, VertexMap};
 
 pub use curvature::{Curvature, CurvatureField, principal_curvatures};
 pub use ears::{clip_ears, cut_polygon};
+pub use features::{FeatureLine, feature_lines, loose_share};
 pub use polygon_edges::PolygonEdges;
 pub use polyline::{Polyline, Seam};
 pub use sharp::sharp_edges;

@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use crate::deform::{self, Sizes, Target};
 use crate::elementary::powf;
+use crate::measure::{FeatureLine, feature_lines, loose_share, sharp_edges};
 use crate::mesh::{HalfedgeId, HalfedgeMap, Id, PolygonMesh, TriangleMesh, VertexId, VertexMap};
 use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
@@ -111,6 +112,23 @@ pub struct For<'a> {
     /// The sizes of the quads.
     pub sizes: &'a flow::sizes::Settings,
     pub seed: u64,
+    /// Lines of the map's mesh that have edges of it all along.
+    pub lines: &'a [FeatureLine],
+}
+
+/// A solid has few edges: of more lines, as of the facets of a model, no grid keeps to all.
+const MOST_LINES: usize = 100;
+/// The share of a solid's edges that may end loosely.
+const MOST_LOOSE: f64 = 0.02;
+
+/// The sharp edges of a mesh as lines, if they are those of a solid.
+pub fn solid(mesh: &TriangleMesh, sharp_angle: Option<f64>) -> Option<Vec<FeatureLine>> {
+    let sharp = sharp_edges(mesh, sharp_angle?);
+    if loose_share(mesh, &sharp) > MOST_LOOSE {
+        return None;
+    }
+    let lines = feature_lines(mesh, &sharp);
+    (1..=MOST_LINES).contains(&lines.len()).then_some(lines)
 }
 
 /// Makes an even triangle mesh for quads.
@@ -132,12 +150,14 @@ pub fn even(
     let density = density(map.mesh(), quads, &progress.part("", 0.0, 0.1))?;
     let is_finer = density.iter().any(|&wanted| wanted > 1.0);
     let part = progress.part("", 0.1, 0.7);
-    let Adaptive { primitive, report } = sphere::sized(map, &density, &settings, &part)?;
+    let Adaptive { primitive, report } =
+        sphere::sized(map, (&density, quads.lines), &settings, &part)?;
     let part = progress.part("", 0.7, 1.0);
     let settings = deform::Settings {
         sizes: if is_finer { Sizes::Own } else { Sizes::Equal },
         // Quads are made on it, and tips that are moved would be lost to them.
         separates: false,
+        is_on_lines: !quads.lines.is_empty(),
         ..deform::Settings::default()
     };
     let deformed = deform::deform(map, &primitive, target, &settings, &part)?;

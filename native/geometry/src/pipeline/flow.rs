@@ -4,13 +4,14 @@ use super::Settings;
 use super::attempt::Attempt;
 use super::clock::Clock;
 use super::crosses;
-use super::even::{For, Marked, even};
+use super::even::{self, For, Marked, even};
 use super::flowed::{Flowed, FlowedPart, better};
 use super::probe::n_missed;
 use super::sheets::Thick;
 use super::{density, mirror, rods};
 use crate::deform::{self, Flowing, Target};
 use crate::embed::{self, Covered};
+use crate::measure::FeatureLine;
 use crate::mesh::{HalfedgeMap, VertexMap};
 use crate::mirror::Doubled;
 use crate::progress::{Cancelled, Progress};
@@ -104,6 +105,32 @@ fn flowing(
     clock: &mut Clock,
     progress: &Progress<'_>,
 ) -> Result<Result<FlowedPart, String>, Cancelled> {
+    let style = asked.settings.flow(asked.n_quads);
+    let lines = even::solid(map.mesh(), style.sharp_angle);
+    let lines = lines.filter(|_| Marked::new(target.mesh(), asked.marked).is_empty());
+    let mut from = 0.0;
+    if let Some(lines) = lines {
+        from = 0.5;
+        let part = progress.part("", 0.0, from);
+        let found = along(map, target, (asked, &lines), clock, &part)?;
+        if let Ok(found) = found
+            && found.n_failed() == 0
+        {
+            return Ok(Ok(found));
+        }
+    }
+    let part = progress.part("", from, 1.0);
+    along(map, target, (asked, &[]), clock, &part)
+}
+
+/// The same along all lines of a solid, or, where none are given, along what is long and clear.
+fn along(
+    map: &SphereMap,
+    target: &Target,
+    (asked, lines): (Asked<'_>, &[FeatureLine]),
+    clock: &mut Clock,
+    progress: &Progress<'_>,
+) -> Result<Result<FlowedPart, String>, Cancelled> {
     let (n_quads, settings) = (asked.n_quads, asked.settings);
     let part = progress.part("sphere", 0.0, 0.15);
     let wanted = Marked::new(target.mesh(), asked.marked);
@@ -111,10 +138,14 @@ fn flowing(
     if !wanted.is_empty() {
         style.field.alignment *= BESIDE_MARKS;
     }
+    if !lines.is_empty() {
+        style.creases = flow::Creases::All;
+    }
     let quads = For {
         n_quads,
         sizes: &style.sizes,
         seed: settings.seed,
+        lines,
     };
     let even = clock.step("sphere", || {
         told(even(map, (target, &wanted), &quads, &part))
@@ -208,6 +239,8 @@ impl Ground<'_> {
         let mut best: Result<FlowedPart, String> = Err(String::new());
         let mut from = 0.0;
         let all = Attempt::ALL.into_iter();
+        // Where a solid's creases are not met other settings do not help.
+        let all = all.filter(|attempt| !self.is_solid() || *attempt == Attempt::Usual);
         for attempt in all.filter(|attempt| attempt.is_worth_trying(&self.style)) {
             // Without strips nothing is its own image.
             let is_flowing = best.as_ref().is_ok_and(|best| !best.is_last_resort());
@@ -270,6 +303,7 @@ impl Ground<'_> {
         };
         let settings = deform::Settings {
             evenness: self.evenness(),
+            is_on_lines: self.is_solid(),
             ..deform::Settings::default()
         };
         let fit = || deform::deform_flow(&self.even, flowing, self.target, &settings, &part);
@@ -299,6 +333,11 @@ impl Ground<'_> {
                 cover: covered.report,
             },
         }))
+    }
+
+    /// Whether all sharp edges are followed.
+    fn is_solid(&self) -> bool {
+        self.style.creases == flow::Creases::All
     }
 
     /// How much edges wish for one length; where somebody wants quads of other sizes, not at all.

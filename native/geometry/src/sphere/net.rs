@@ -1,5 +1,7 @@
 //! Triangles that lie on the sphere and on the surface at once.
 
+use std::collections::HashSet;
+
 use glam::DVec3;
 use robust::{Coord3D, orient3d};
 
@@ -15,6 +17,8 @@ pub struct Net<'a> {
     places: VertexMap<SurfacePoint>,
     sphere: VertexMap<DVec3>,
     positions: VertexMap<DVec3>,
+    /// Edges that are never turned, smaller end first.
+    kept: HashSet<[VertexId; 2]>,
 }
 
 /// The corners of a regular tetrahedron and its faces.
@@ -39,7 +43,25 @@ impl<'a> Net<'a> {
             sphere: places.iter().map(|&at| map.sphere_position(at)).collect(),
             positions: places.iter().map(|&at| map.surface_position(at)).collect(),
             places: VertexMap::from_vec(places),
+            kept: HashSet::new(),
         }
+    }
+
+    /// Saves an edge from being turned.
+    pub fn keep_edge(&mut self, a: VertexId, b: VertexId) {
+        self.kept.insert([a.min(b), a.max(b)]);
+    }
+
+    /// Whether the way over the sphere from a vertex to another leaves it between two neighbours,
+    /// the first on the right, so that it crosses the edge that joins them.
+    pub fn looks_between(
+        &self,
+        from: VertexId,
+        [right, left]: [VertexId; 2],
+        to: VertexId,
+    ) -> bool {
+        let [p, r, l, q] = [from, right, left, to].map(|v| self.sphere[v]);
+        is_positive(p, r, q) && is_positive(p, q, l)
     }
 
     pub fn n_vertices(&self) -> usize {
@@ -126,6 +148,10 @@ impl<'a> Net<'a> {
         let net = &self.triangulation;
         let twin = net.twin(h);
         let corners = [net.origin(h), net.apex(twin), net.target(h), net.apex(h)];
+        let ends = [corners[0].min(corners[2]), corners[0].max(corners[2])];
+        if self.kept.contains(&ends) {
+            return false;
+        }
         let [a, d, b, c] = corners.map(|v| self.sphere[v]);
         let allowed = is_positive(d, c, a) && is_positive(c, d, b) && net.can_flip(h);
         if allowed {

@@ -33,6 +33,9 @@ pub struct Chains {
     n_lines: usize,
     /// Which of the lines are each other's images.
     pub ties: Vec<Tie>,
+    /// Of the first lines the vertices at their ends, where they are put along the nearest axis at any
+    /// cost and have to be straight ways between these.
+    pub firm: Vec<[u32; 2]>,
     /// The terms of each halfedge in the order of the lines; an edge's may be on either side.
     terms: Vec<Vec<Term>>,
 }
@@ -114,6 +117,7 @@ impl Complex {
         let mut chains = Chains {
             n_lines: lines.len(),
             ties: Vec::new(),
+            firm: Vec::new(),
             terms: vec![Vec::new(); self.twins.len()],
         };
         for (i, line) in lines.iter().enumerate() {

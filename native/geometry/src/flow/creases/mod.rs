@@ -8,6 +8,7 @@
 //! ([`seams`]).
 
 mod attract;
+mod network;
 mod pick;
 mod rows;
 mod seams;
@@ -17,8 +18,9 @@ use crate::measure::angle_between;
 use crate::mesh::{HalfedgeId, HalfedgeMap, TriangleMesh, VertexId, VertexMap};
 
 pub use attract::attract;
-pub use pick::{Line, are_clear, lines};
-pub use rows::{rows, tie_rows};
+pub use network::Network;
+pub use pick::{Line, are_clear, lines, whole_lines};
+pub use rows::{Firm, rows, tie_rows};
 pub use seams::{goals, seams};
 
 /// A line that turns by more than this at a vertex has a corner there (53°).

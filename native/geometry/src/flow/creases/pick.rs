@@ -56,13 +56,30 @@ pub fn lines(
             continue;
         }
         for halfedges in pieces(mesh, halfedges, h) {
-            let [first, last] = [halfedges[0], halfedges[halfedges.len() - 1]];
-            let ends = [mesh.origin(first), mesh.target(last)];
-            kept.extend(ends);
-            lines.push(Line { halfedges, ends });
+            let line = Line::new(mesh, halfedges);
+            kept.extend(line.ends);
+            lines.push(line);
         }
     }
     lines
+}
+
+/// All lines of a network of creases, however short, from corner to corner and longest first.
+///
+/// Long ones come in pieces, as those of [`lines`].
+pub fn whole_lines(
+    mesh: &TriangleMesh,
+    field: &OrientationField,
+    sharp: &HalfedgeMap<bool>,
+    h: f64,
+) -> Vec<Line> {
+    let mut all: Vec<(f64, Vec<HalfedgeId>)> = chains(mesh, field, sharp)
+        .into_iter()
+        .map(|line| (length(mesh, &line), line))
+        .collect();
+    all.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let pieces = all.into_iter().flat_map(|(_, line)| pieces(mesh, line, h));
+    pieces.map(|halfedges| Line::new(mesh, halfedges)).collect()
 }
 
 /// Whether enough of the sharp edges lie on the lines of so much length in all: else they are the
@@ -74,6 +91,14 @@ pub fn are_clear(mesh: &TriangleMesh, sharp: &HalfedgeMap<bool>, on_lines: f64) 
 }
 
 impl Line {
+    fn new(mesh: &TriangleMesh, halfedges: Vec<HalfedgeId>) -> Self {
+        let [first, last] = [halfedges[0], halfedges[halfedges.len() - 1]];
+        Self {
+            ends: [mesh.origin(first), mesh.target(last)],
+            halfedges,
+        }
+    }
+
     /// How long those of its edges are that `counts` says.
     pub fn length_of(&self, mesh: &TriangleMesh, counts: impl Fn(&HalfedgeId) -> bool) -> f64 {
         let counted: Vec<HalfedgeId> = self.halfedges.iter().copied().filter(counts).collect();

@@ -1,7 +1,8 @@
 //! Lines as linear equations on the periods.
 
-use glam::IVec2;
+use glam::{DVec2, IVec2};
 
+use super::seams::Walker;
 use crate::flow::complex::{Complex, Tie, Turn};
 use crate::flow::periods::{Part, real_row};
 use crate::flow::rings::off_axis;
@@ -10,7 +11,8 @@ use crate::flow::rings::off_axis;
 const OBLIQUE: f64 = 0.5;
 
 /// The equations that put the lines of a complex with chosen periods along the axes they are
-/// wished to be near; none for lines that are wished to be oblique, and those of ties.
+/// wished to be near; none for lines that are wished to be oblique
+/// and not firm, and those of ties.
 pub fn rows(complex: &Complex) -> Vec<Vec<f64>> {
     let is_tied = |line: &usize| (complex.chains.ties.iter()).any(|tie| tie.lines.contains(line));
     let lines = (0..complex.chains.n_lines()).filter(|line| !is_tied(line));
@@ -37,8 +39,46 @@ fn tied(complex: &Complex, Tie { lines, turns }: Tie) -> [Vec<f64>; 2] {
 fn row(complex: &Complex, line: usize) -> Option<Vec<f64>> {
     let wished = complex.sum_along(line, &complex.wish);
     let part: Part = off_axis(wished);
-    if part.of(wished).abs() > OBLIQUE * wished.length() {
+    if complex.chains.firm.is_empty() && part.of(wished).abs() > OBLIQUE * wished.length() {
         return None;
     }
     Some(real_row(&complex.coefficients_along(line), part))
+}
+
+/// Firm lines as sums of periods, to tell in how many a grid has no straight way between the ends.
+pub struct Firm {
+    lines: Vec<(Vec<IVec2>, [u32; 2])>,
+}
+
+impl Firm {
+    /// The firm lines of a complex with chosen periods.
+    pub fn of(complex: &Complex) -> Self {
+        let lines = complex.chains.firm.iter().enumerate();
+        Self {
+            lines: lines
+                .map(|(i, &ends)| (complex.coefficients_along(i), ends))
+                .collect(),
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.lines.is_empty()
+    }
+
+    /// How many have no straight way in a grid of the given periods.
+    pub fn n_unmet(&self, (quads, n_vertices): (&[[u32; 4]], usize), periods: &[f64]) -> usize {
+        if self.lines.is_empty() {
+            return 0;
+        }
+        let ends = self.lines.iter().map(|(_, ends)| *ends);
+        let walker = Walker::new(quads, n_vertices).stopping_at(ends);
+        let periods = periods.as_chunks::<2>().0;
+        let is_unmet = |(coefficients, ends): &&(Vec<IVec2>, [u32; 2])| {
+            let span = coefficients.iter().zip(periods);
+            let span: DVec2 = span.map(|(c, &x)| c.as_dvec2().rotate(x.into())).sum();
+            walker.along(span, *ends).is_empty()
+        };
+        self.lines.iter().filter(is_unmet).count()
+    }
 }

@@ -27,24 +27,26 @@ const LEAST_GAP: f64 = 0.3;
 /// singularities.
 ///
 /// `lines` are those of `complex.chains` as they were on the mesh, `positions` first ones of the
-/// quads' vertices. Of the ways that arrive the nearest is taken. A vertex inside one seam is in no
-/// other.
+/// quads' vertices. Of the ways that arrive the nearest is taken; firm lines need not be near. A
+/// vertex inside one seam is in no other.
 pub fn seams(
     mesh: &TriangleMesh,
     lines: &[&Line],
     complex: &Complex,
     (quads, positions): (&[[u32; 4]], &[DVec3]),
 ) -> Vec<Option<Seam>> {
-    let walker = Walker::new(quads, positions.len());
+    let firm = complex.chains.firm.iter().copied();
+    let walker = Walker::new(quads, positions.len()).stopping_at(firm);
+    let are_firm = !complex.chains.firm.is_empty();
     let mut is_taken = vec![false; positions.len()];
     let mut seams = Vec::new();
     for (i, line) in lines.iter().enumerate() {
         let span = complex.sum_along(i, &complex.start);
-        let walks = walker.along(span, ends(complex, line)).into_iter();
+        let walks = walker.along(span, line.kept_ends(complex)).into_iter();
         let line = polyline(mesh, line);
         let laid = walks.map(|walk| lay(&line, &walk, positions));
         let best = laid.reduce(|a, b| if b.0 < a.0 { b } else { a });
-        let near = best.filter(|(miss, seam)| is_near(seam, *miss));
+        let near = best.filter(|(miss, seam)| are_firm || is_near(seam, *miss));
         let seam = near.map(|(_, seam)| seam).filter(|seam| {
             let mut inner = seam.vertices[1..seam.vertices.len() - 1].iter();
             !inner.any(|v| is_taken[v.index()])
@@ -67,19 +69,22 @@ enum Hand {
     Right,
 }
 
-struct Walker {
+pub(super) struct Walker {
     /// The vertex after an edge in the quad on its left.
     ahead: HashMap<[u32; 2], u32>,
     valences: Vec<u8>,
     outgoing: Vec<u32>,
+    /// Vertices that no walk passes.
+    is_stop: Vec<bool>,
 }
 
 impl Walker {
-    fn new(quads: &[[u32; 4]], n_vertices: usize) -> Self {
+    pub fn new(quads: &[[u32; 4]], n_vertices: usize) -> Self {
         let mut walker = Self {
             ahead: HashMap::with_capacity(4 * quads.len()),
             valences: vec![0; n_vertices],
             outgoing: vec![0; n_vertices],
+            is_stop: vec![false; n_vertices],
         };
         for quad in quads {
             for i in 0..4 {
@@ -92,8 +97,16 @@ impl Walker {
         walker
     }
 
+    /// The same with vertices that no walk passes: the ends of lines.
+    pub fn stopping_at(mut self, ends: impl Iterator<Item = [u32; 2]>) -> Self {
+        for end in ends.flatten() {
+            self.is_stop[end as usize] = true;
+        }
+        self
+    }
+
     /// All straight walks as long as a line's span and from its first end to its last.
-    fn along(&self, span: DVec2, [first, last]: [u32; 2]) -> Vec<Vec<u32>> {
+    pub fn along(&self, span: DVec2, [first, last]: [u32; 2]) -> Vec<Vec<u32>> {
         let n = span.length().round() as usize;
         if span.abs().min_element() > ON_AXIS || n == 0 {
             return Vec::new();
@@ -121,6 +134,9 @@ impl Walker {
         let mut walk = vec![first, next];
         while walk.len() <= n {
             let [from, at] = [walk[walk.len() - 2], walk[walk.len() - 1]];
+            if self.is_stop[at as usize] {
+                return None;
+            }
             let n_turns = match hand {
                 Hand::Left => 2,
                 Hand::Right => self.valences[at as usize] - 2,
@@ -135,12 +151,14 @@ impl Walker {
     }
 }
 
-/// The vertices of the grid at the ends of a line: a complex keeps the order of those it keeps.
-fn ends(complex: &Complex, line: &Line) -> [u32; 2] {
-    line.ends.map(|end| {
-        let at = complex.original.binary_search(&end);
-        at.expect("the ends of lines are kept") as u32
-    })
+impl Line {
+    /// The vertices of the grid at its ends: a complex keeps the order of those it keeps.
+    pub fn kept_ends(&self, complex: &Complex) -> [u32; 2] {
+        self.ends.map(|end| {
+            let at = complex.original.binary_search(&end);
+            at.expect("the ends of lines are kept") as u32
+        })
+    }
 }
 
 /// The line on the surface.

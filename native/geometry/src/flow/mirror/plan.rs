@@ -30,6 +30,8 @@ pub struct Plan {
     pub beside: Vec<Line>,
     /// Ways from the plane to everything on the positive side that is kept.
     pub pairs: Vec<Pair>,
+    /// Whether all lines have to be met.
+    pub is_firm: bool,
 }
 
 impl Plan {
@@ -83,6 +85,7 @@ pub fn plan(doubled: &Doubled, field: &OrientationField, creases: &[Line]) -> Pl
         plane,
         beside,
         pairs,
+        is_firm: false,
     }
 }
 

@@ -118,7 +118,7 @@ impl<'a> Place<'a> {
         if problem.cost(&score) >= least {
             return None;
         }
-        let score = score.with_doubled(&state.complex);
+        let score = problem.completed(score, &state);
         (problem.cost(&score) < least).then_some(Candidate { state, score })
     }
 }

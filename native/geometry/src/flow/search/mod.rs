@@ -14,12 +14,13 @@ use thiserror::Error;
 
 use super::complex::Complex;
 use super::covariance::Dense;
-use super::creases;
+use super::creases::{self, Firm};
 use super::drag::{SHORT, State};
 use super::grid::{self, Grid, NotReadable};
 use super::periods::{self, NotASphere, Periods, dot};
 use super::rings::impose_row;
 use super::rounding::Rounding;
+use super::strips::doubled_edges;
 use crate::progress::{Cancelled, Progress};
 
 pub use score::{Score, Weights};
@@ -143,6 +144,8 @@ struct Problem<'a> {
     /// Its inverse.
     covariance: Dense,
     n_quads: f64,
+    /// Lines that must be straight ways.
+    firm: Firm,
     settings: &'a Settings,
 }
 
@@ -177,7 +180,8 @@ impl<'a> Problem<'a> {
             let variance = start.covariance.between(row, row);
             off * off > DEAREST * n_quads * variance.max(1e-9)
         };
-        lines.retain(|row| !dear(&start, row) && impose_row(&mut start, row));
+        let are_firm = !complex.chains.firm.is_empty();
+        lines.retain(|row| (are_firm || !dear(&start, row)) && impose_row(&mut start, row));
         kept.append(&mut lines);
         Ok(Self {
             wish: start.wish.clone(),
@@ -186,12 +190,29 @@ impl<'a> Problem<'a> {
             covariance,
             energy,
             n_quads,
+            firm: Firm::of(complex),
             settings,
         })
     }
 
     fn score(&self, state: &State) -> Score {
         Score::of_lines(&state.complex, &self.wish, self.n_quads)
+    }
+
+    /// Counts what only the grid tells, which costs most of a trial.
+    fn completed(&self, score: Score, state: &State) -> Score {
+        let Ok((quads, n_vertices)) = grid::read_quads(&state.complex) else {
+            return Score {
+                n_doubled: 1,
+                ..score
+            };
+        };
+        let n_unmet = self.firm.n_unmet((&quads, n_vertices), &state.periods);
+        Score {
+            n_doubled: doubled_edges(&quads, n_vertices),
+            n_unmet,
+            ..score
+        }
     }
 
     fn cost(&self, score: &Score) -> f64 {

@@ -4,9 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::flow::complex::Complex;
 use crate::flow::covariance::energy;
-use crate::flow::grid;
 use crate::flow::lines::trace;
-use crate::flow::strips::doubled_edges;
 
 /// A count of quads this near to the wanted one is as good as exact.
 const EXACT: f64 = 0.005;
@@ -53,6 +51,9 @@ pub struct Score {
     pub loops: f64,
     /// How many halfedges double another; the mesh is simple without any.
     pub n_doubled: usize,
+    /// How many lines of a solid are no straight ways.
+    #[serde(skip)]
+    pub n_unmet: usize,
 }
 
 fn relative_error(area: f64, n_wanted: f64) -> f64 {
@@ -71,20 +72,13 @@ impl Score {
             spiral: strips.spiral,
             loops: strips.loops,
             n_doubled: 0,
+            n_unmet: 0,
         }
     }
 
     /// The count's error that counts, for a metric of some area.
     pub(super) fn excess_error(area: f64, n_wanted: f64) -> f64 {
         (relative_error(area, n_wanted) - EXACT).max(0.0)
-    }
-
-    /// Counts the doubled edges too: what costs most of a trial, and no trial that is worse needs.
-    #[must_use]
-    pub fn with_doubled(mut self, complex: &Complex) -> Self {
-        self.n_doubled = grid::read_quads(complex)
-            .map_or(1, |(quads, n_vertices)| doubled_edges(&quads, n_vertices));
-        self
     }
 
     /// What the search makes small.
@@ -94,6 +88,9 @@ impl Score {
             + weights.count * (self.count_error - EXACT).max(0.0);
         if self.n_doubled > 0 {
             cost += NOT_SIMPLE + DOUBLED * self.n_doubled as f64;
+        }
+        if self.n_unmet > 0 {
+            cost += NOT_SIMPLE + self.n_unmet as f64;
         }
         cost
     }

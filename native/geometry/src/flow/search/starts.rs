@@ -53,7 +53,7 @@ pub(super) fn round_at_scales(problem: &Problem, progress: &Progress) -> Result<
         }
     }
     if let Some(best) = &mut found.best {
-        best.score = best.score.with_doubled(&best.state.complex);
+        best.score = problem.completed(best.score, &best.state);
     }
     Ok(found)
 }
@@ -108,7 +108,10 @@ impl Found {
             };
             let n_rings = impose(&mut rounding, pool, attempt.scale, greed);
             if let Some(state) = rounding.round() {
-                let score = problem.score(&state);
+                let mut score = problem.score(&state);
+                if !problem.firm.is_empty() {
+                    score = problem.completed(score, &state);
+                }
                 return Some(Candidate { state, score });
             }
             if n_rings < 2 || self.n_retries == MOST_RETRIES {

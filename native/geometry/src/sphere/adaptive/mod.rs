@@ -1,12 +1,16 @@
 //! Triangles placed where a surface needs them.
 
+mod creases;
 mod relax;
 mod sample;
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use creases::Creases;
+
 use super::net::Net;
+use crate::measure::FeatureLine;
 use crate::mesh::{FaceId, Id, PolygonMesh, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
 use crate::random::Random;
@@ -91,24 +95,34 @@ pub fn adaptive(
     progress: &Progress,
 ) -> Result<Adaptive, AdaptiveError> {
     let density = VertexMap::filled(map.mesh().n_vertices(), 1.0);
-    sized(map, &density, settings, progress)
+    sized(map, (&density, &[]), settings, progress)
 }
 
 /// The same with a wish for each vertex of the map's mesh: faces per area in proportion to
-/// `density`, which must be positive.
+/// `density`, which must be positive. Lines of the map's mesh get vertices and edges all along them, in
+/// place of others near by; the number of faces is then met roughly.
 ///
 /// # Errors
 /// As [`adaptive`].
 pub fn sized(
     map: &SphereMap,
-    density: &VertexMap<f64>,
+    (density, lines): (&VertexMap<f64>, &[FeatureLine]),
     settings: &Settings,
     progress: &Progress,
 ) -> Result<Adaptive, AdaptiveError> {
     let n_vertices = settings.n_faces.max(4) / 2 + 2;
     let mut random = Random::new(settings.seed);
-    let places = sample::sample(map, density, n_vertices - 4, &mut random);
-    let mut net = scatter(map, &places, &mut random, &progress.part("", 0.0, 0.3))?;
+    let creases = Creases::new(map, (density, lines), settings.n_faces);
+    let n_free = n_vertices.saturating_sub(4 + creases.places.len());
+    let places = creases.clear(map, sample::sample(map, density, n_free, &mut random));
+    let mut net = Net::tetrahedron(map);
+    let fixed = creases.insert(&mut net);
+    let part = progress.part("", 0.0, 0.3);
+    scatter(&mut net, &places, &mut random, &part)?;
+    let mut is_fixed = VertexMap::filled(net.n_vertices(), false);
+    for v in fixed {
+        is_fixed[v] = true;
+    }
     let mut report = Report::default();
     for round in 0..settings.n_rounds {
         let share = |r| 0.3 + 0.7 * r as f64 / settings.n_rounds as f64;
@@ -119,7 +133,7 @@ pub fn sized(
         if round % 3 == 2 {
             report.n_flips += relax::even_valences(&mut net, &part)?;
         }
-        relax::smooth(&mut net, density, &mut report, &part)?;
+        relax::smooth(&mut net, (density, &is_fixed), &mut report, &part)?;
     }
     report.n_flips += relax::flip_to_delaunay(&mut net, &progress.part("", 1.0, 1.0))?;
     let (faces, sphere) = net.into_parts();
@@ -130,14 +144,13 @@ pub fn sized(
     Ok(Adaptive { primitive, report })
 }
 
-/// Joins places, and four more that surround the sphere, by their Delaunay triangulation there.
-fn scatter<'a>(
-    map: &'a SphereMap,
+/// Joins places, and what is there, by their Delaunay triangulation on the sphere.
+fn scatter(
+    net: &mut Net,
     places: &[SurfacePoint],
     random: &mut Random,
     progress: &Progress,
-) -> Result<Net<'a>, AdaptiveError> {
-    let mut net = Net::tetrahedron(map);
+) -> Result<(), AdaptiveError> {
     for (i, at) in insertion_order(places.len(), random)
         .into_iter()
         .enumerate()
@@ -145,14 +158,14 @@ fn scatter<'a>(
         if i.is_multiple_of(4096) {
             progress.at(i as f64 / places.len() as f64)?;
         }
-        if !insert_near(&mut net, places[at], random) && !insert_anywhere(&mut net) {
+        if !insert_near(net, places[at], random) && !insert_anywhere(net) {
             return Err(AdaptiveError::NoRoom {
                 n_placed: net.n_vertices(),
                 n_wanted: places.len() + 4,
             });
         }
     }
-    Ok(net)
+    Ok(())
 }
 
 /// Inserts a place, or one beside it when it coincides with what is there.

@@ -73,10 +73,10 @@ pub fn even_valences(net: &mut Net, progress: &Progress) -> Result<usize, Cancel
     Ok(n_flips)
 }
 
-/// Moves every vertex along the surface to the middle of the triangles around it.
+/// Moves every vertex that is not fixed along the surface to the middle of the triangles around it.
 pub fn smooth(
     net: &mut Net,
-    density: &VertexMap<f64>,
+    (density, is_fixed): (&VertexMap<f64>, &VertexMap<bool>),
     report: &mut Report,
     progress: &Progress,
 ) -> Result<(), Cancelled> {
@@ -84,6 +84,9 @@ pub fn smooth(
     for v in net.triangulation.vertex_ids() {
         if v.index().is_multiple_of(STRIDE) {
             progress.at(0.5 + 0.5 * v.index() as f64 / n_vertices as f64)?;
+        }
+        if is_fixed[v] {
+            continue;
         }
         if net.step(v, middle(net, density, v)) {
             report.n_moves += 1;

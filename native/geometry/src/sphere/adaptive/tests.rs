@@ -92,7 +92,7 @@ fn a_wish_for_density_is_followed() {
         n_faces: 2000,
         ..Settings::default()
     };
-    let made = sized(&map, &density, &settings, &Progress::none()).unwrap();
+    let made = sized(&map, (&density, &[]), &settings, &Progress::none()).unwrap();
     let upper = made.primitive.positions().iter().filter(|p| p.z > 0.0);
     let share = upper.count() as f64 / made.report.n_vertices as f64;
     assert!((0.76..0.84).contains(&share), "{share}");

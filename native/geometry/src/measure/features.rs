@@ -2,15 +2,15 @@
 
 use glam::DVec3;
 
-use crate::measure::Polyline;
-use crate::mesh::{HalfedgeMap, TriangleMesh, VertexId, VertexMap};
+use super::Polyline;
+use crate::mesh::{HalfedgeId, HalfedgeMap, TriangleMesh, VertexId, VertexMap};
 
 /// Cosine of the turn at which a line has a corner even without a third line: 50°.
 const CORNER_COSINE: f64 = 0.64;
 
 /// A chain of marked edges from corner to corner, or around.
 #[derive(Clone, PartialEq, Debug)]
-pub(super) struct FeatureLine {
+pub struct FeatureLine {
     /// The vertices in order; a closed line ends with the one it starts with.
     pub vertices: Vec<VertexId>,
     line: Polyline,
@@ -25,14 +25,17 @@ impl FeatureLine {
         }
     }
 
+    /// The length of the whole line.
     pub fn length(&self) -> f64 {
         self.line.length()
     }
 
+    /// Whether it goes round.
     pub fn is_closed(&self) -> bool {
         self.vertices.first() == self.vertices.last()
     }
 
+    /// Its straight pieces.
     pub fn segments(&self) -> impl Iterator<Item = [DVec3; 2]> {
         self.line.pieces()
     }
@@ -42,10 +45,16 @@ impl FeatureLine {
         let (before, _) = self.line.piece_at(length);
         (self.line.point(length), self.vertices[before])
     }
+
+    /// The two vertices around the point at an arc length from the start, and its share of the way.
+    pub fn between(&self, length: f64) -> ([VertexId; 2], f64) {
+        let (before, share) = self.line.piece_at(length);
+        ([self.vertices[before], self.vertices[before + 1]], share)
+    }
 }
 
 /// Chains the edges that are marked on either side, longest line first.
-pub(super) fn feature_lines(mesh: &TriangleMesh, marked: &HalfedgeMap<bool>) -> Vec<FeatureLine> {
+pub fn feature_lines(mesh: &TriangleMesh, marked: &HalfedgeMap<bool>) -> Vec<FeatureLine> {
     let neighbours = marked_neighbours(mesh, marked);
     let is_corner = |v: VertexId| match neighbours[v][..] {
         [] => false,
@@ -74,6 +83,45 @@ pub(super) fn feature_lines(mesh: &TriangleMesh, marked: &HalfedgeMap<bool>) -> 
         .collect();
     lines.sort_by(|a, b| b.length().total_cmp(&a.length()));
     lines
+}
+
+/// The share of all marked edges, by length, on lines that begin or end where no other goes on: 0
+/// where they are the creases of a solid.
+pub fn loose_share(mesh: &TriangleMesh, sharp: &HalfedgeMap<bool>) -> f64 {
+    let mut n = VertexMap::filled(mesh.n_vertices(), 0_u32);
+    for h in mesh.halfedge_ids().filter(|&h| sharp[h]) {
+        n[mesh.origin(h)] += 1;
+    }
+    // The line of a loose end, as far as nothing branches off.
+    let mut is_loose = HalfedgeMap::filled(sharp.len(), false);
+    for start in mesh
+        .halfedge_ids()
+        .filter(|&h| sharp[h] && n[mesh.origin(h)] == 1)
+    {
+        let mut h = start;
+        loop {
+            is_loose[h] = true;
+            let at = mesh.target(h);
+            let on = mesh
+                .outgoing(at)
+                .filter(|&next| sharp[next] && mesh.target(next) != mesh.origin(h));
+            let Some(next) = on.take(usize::from(n[at] == 2)).next() else {
+                break;
+            };
+            h = next;
+        }
+    }
+    let length = |h: HalfedgeId| {
+        mesh.position(mesh.origin(h))
+            .distance(mesh.position(mesh.target(h)))
+    };
+    let all: f64 = mesh.halfedge_ids().filter(|&h| sharp[h]).map(length).sum();
+    let loose: f64 = mesh
+        .halfedge_ids()
+        .filter(|&h| is_loose[h])
+        .map(length)
+        .sum();
+    2.0 * loose / all.max(f64::MIN_POSITIVE)
 }
 
 fn marked_neighbours(mesh: &TriangleMesh, marked: &HalfedgeMap<bool>) -> VertexMap<Vec<VertexId>> {
