@@ -28,6 +28,7 @@ mod report;
 mod rods;
 mod settings;
 mod sheets;
+mod sides;
 mod split;
 mod verbs;
 
