@@ -81,7 +81,7 @@ pub fn flow_part(
         let (map, made_on) = (&thick.map, &thick.target);
         let part = progress.part("", 0.05, 0.6);
         if let Ok(found) = flowing(map, made_on, asked, clock, &part)? {
-            let onto = (target, asked.axis);
+            let onto = (target, asked);
             let found = told(thick.thinned(found, onto, progress))?;
             if found.as_ref().is_ok_and(FlowedPart::is_sound) {
                 return Ok(found);

@@ -34,6 +34,7 @@ mod rods;
 mod scored;
 mod settings;
 mod sheets;
+mod sides;
 mod small;
 mod split;
 mod stay;

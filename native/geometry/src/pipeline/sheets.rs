@@ -9,11 +9,14 @@ use glam::DVec3;
 
 use super::Error;
 use super::flow::Asked;
-use super::flowed::FlowedPart;
+use super::flowed::{Flowed, FlowedPart};
 use super::mirror::even_out;
+use super::part::embed_mesh;
 use super::probe::n_missed;
 use super::rods::images;
-use crate::deform::{Deformed, Target};
+use super::sides::{Sheet, cut};
+use crate::deform::{self, Deformed, Target};
+use crate::embed::Solver;
 use crate::measure::{area_vector, face_normals, sharp_edges, total_area, volume};
 use crate::mesh::{FaceId, FaceMap, TriangleMesh, VertexMap};
 use crate::nearest::Bvh;
@@ -31,6 +34,8 @@ const SIDES: f64 = 0.7;
 const OFF: f64 = 0.8;
 /// And looks the other way: the cosine between the normals.
 const AWAY: f64 = -0.5;
+/// Where sides are made alike the count may be off by one in so many.
+const COUNT: usize = 25;
 /// Rounds in which what lies between the sides is spread.
 const N_ROUNDS: usize = 60;
 
@@ -38,6 +43,8 @@ const N_ROUNDS: usize = 60;
 pub struct Thick {
     pub map: SphereMap,
     pub target: Target,
+    /// Which of its faces lie on sides.
+    is_side: FaceMap<bool>,
 }
 
 impl Thick {
@@ -56,10 +63,10 @@ impl Thick {
             return Ok(None);
         }
         let apart = 0.5 * (THICK * edge - thickness);
-        let Some(full) = moved_apart(mesh, [thickness, apart], progress)? else {
+        let Some((full, is_side)) = moved_apart(mesh, [thickness, apart], progress)? else {
             return Ok(None);
         };
-        let Some(coarse) = moved_apart(map.mesh(), [thickness, apart], progress)? else {
+        let Some((coarse, _)) = moved_apart(map.mesh(), [thickness, apart], progress)? else {
             return Ok(None);
         };
         let Ok(map) = SphereMap::prove(coarse, map.sphere().clone()) else {
@@ -68,45 +75,91 @@ impl Thick {
         let sharp = sharp_edges(&full, asked.settings.sharp_angle.to_radians());
         let either = sharp.iter().zip(asked.marked).map(|(a, b)| a | b);
         let target = Target::with_features(full, &either.collect(), progress)?;
-        Ok(Some(Self { map, target }))
+        Ok(Some(Self {
+            map,
+            target,
+            is_side,
+        }))
     }
 
     /// Quads of the thick sheet brought back onto the thin one.
     pub fn thinned(
         &self,
-        part: FlowedPart,
-        (target, axis): (&Target, Option<usize>),
+        mut part: FlowedPart,
+        (target, asked): (&Target, Asked<'_>),
         progress: &Progress<'_>,
     ) -> Result<FlowedPart, Error> {
-        let back = |&p: &DVec3| {
-            let at = self.target.bvh().closest(p);
-            let corners = target.mesh().triangle(at.face);
-            corners.iter().zip(at.weights).map(|(&c, w)| c * w).sum()
+        let laid = match self.alike((&part.deformed, target), asked.n_quads, progress)? {
+            Some(laid) => laid,
+            None => self.side_by_side(&part.deformed, target, progress)?,
         };
-        let thick = part.deformed;
-        let positions = thick.mesh.positions().iter().map(back).collect();
-        let mesh = thick.mesh.with_positions(positions);
-        let laid = Deformed::laid(mesh, thick.sphere, thick.features, progress)?;
         let mut deformed = Deformed {
-            led: thick.led,
-            report: crate::deform::Report {
+            report: deform::Report {
                 n_inverted: laid.report.n_inverted,
                 n_crossing: laid.report.n_crossing,
                 n_crossing_left: laid.report.n_crossing_left,
-                ..thick.report
+                ..part.deformed.report
             },
             ..laid
         };
-        if let (Some(axis), Some(Ok(()))) = (axis, &part.mirrored)
-            && let Some(images) = images(&deformed.mesh, axis)
-        {
-            deformed = even_out(&deformed, &images, axis, target);
+        if let (Some(axis), Some(Ok(()))) = (asked.axis, &part.mirrored) {
+            match images(&deformed.mesh, axis) {
+                Some(images) => deformed = even_out(&deformed, &images, axis, target),
+                None => part.mirrored = Some(Err("the sheet is no longer its own image".into())),
+            }
+        }
+        if let Flowed::Used { flow, .. } = &mut part.flowed {
+            flow.n_quads = deformed.mesh.n_faces();
         }
         Ok(FlowedPart {
             n_missed: n_missed(&deformed.mesh, target),
             deformed,
             ..part
         })
+    }
+
+    /// The quads of one side on both; none where they are no sides with one row between, or where the
+    /// count would be off.
+    fn alike(
+        &self,
+        (quads, target): (&Deformed, &Target),
+        n_wanted: usize,
+        progress: &Progress<'_>,
+    ) -> Result<Option<Deformed>, Error> {
+        let sheet = Sheet {
+            thin: target,
+            thick: &self.target,
+            is_side: &self.is_side,
+        };
+        let Some(alike) = sheet.alike(quads, n_wanted) else {
+            return Ok(None);
+        };
+        let n_off = alike.mesh.n_faces().abs_diff(n_wanted);
+        let Some(cut) = cut(&alike.mesh).filter(|_| n_off * COUNT <= n_wanted) else {
+            return Ok(None);
+        };
+        let map = embed_mesh(cut, &Solver::default(), &progress.part("embed", 0.9, 1.0))?.map;
+        let sphere = map.sphere().iter().copied().collect();
+        let laid = Deformed::laid(alike.mesh, sphere, alike.on_lines, progress)?;
+        Ok(Some(laid))
+    }
+
+    /// Every vertex where it belongs.
+    fn side_by_side(
+        &self,
+        thick: &Deformed,
+        target: &Target,
+        progress: &Progress<'_>,
+    ) -> Result<Deformed, Error> {
+        let back = |&p: &DVec3| {
+            let at = self.target.bvh().closest(p);
+            let corners = target.mesh().triangle(at.face);
+            corners.iter().zip(at.weights).map(|(&c, w)| c * w).sum()
+        };
+        let positions = thick.mesh.positions().iter().map(back).collect();
+        let mesh = thick.mesh.with_positions(positions);
+        let (sphere, features) = (thick.sphere.clone(), thick.features.clone());
+        Ok(Deformed::laid(mesh, sphere, features, progress)?)
     }
 }
 
@@ -115,7 +168,7 @@ fn moved_apart(
     mesh: &TriangleMesh,
     [thickness, apart]: [f64; 2],
     progress: &Progress<'_>,
-) -> Result<Option<TriangleMesh>, Cancelled> {
+) -> Result<Option<(TriangleMesh, FaceMap<bool>)>, Cancelled> {
     let normals = face_normals(mesh);
     let tree = Bvh::build_of_mesh(mesh, progress)?;
     let is_side = |face: FaceId| {
@@ -136,7 +189,7 @@ fn moved_apart(
     let ways = ways(mesh, &normals, &is_side);
     let positions = mesh.positions().iter().zip(ways.iter());
     let positions = positions.map(|(&p, &way)| p + way * apart).collect();
-    Ok(Some(mesh.with_positions(positions)))
+    Ok(Some((mesh.with_positions(positions), is_side)))
 }
 
 /// The way out of every vertex of a side; those between the sides go with their neighbours.
@@ -209,5 +262,6 @@ mod tests {
         let gaps = gaps.map(|&p| tree.closest(p).distance_squared.sqrt());
         let farthest = gaps.fold(0.0, f64::max);
         assert!(farthest < 0.01, "{farthest}");
+        assert_eq!(part.deform.n_crossing_left, 0);
     }
 }
