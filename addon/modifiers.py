@@ -12,6 +12,7 @@ from typing import Any, Protocol
 import bpy
 import numpy as np
 import orbflow_native
+from mathutils import kdtree
 
 from . import attributes, half, mesh_arrays
 from .artist import keys, layers
@@ -88,6 +89,9 @@ _UNSEEN = {
 
 # Attributes that are as seen when they are gone.
 _SHADING = {"sharp_face", "sharp_edge"}
+
+# Borders no farther from each other than this share of the diagonal are welded by the core.
+_WELD = 1e-5
 
 # A material's name and the file it is linked from.
 Named = tuple[str, str | None]
@@ -331,14 +335,23 @@ def _is_torn(base: bpy.types.Mesh, mesh: bpy.types.Mesh) -> bool:
 
 
 def _is_gaping(mesh: bpy.types.Mesh) -> bool:
-    """Whether a mesh has borders even where vertices of one place are one."""
+    """Whether a mesh has borders even where those that lie on each other are one."""
     # Zero has two signs.
     places = attributes.positions(mesh) + np.float32(0)
-    _, vertex = np.unique(places, axis=0, return_inverse=True)
+    _, first, vertex = np.unique(places, axis=0, return_index=True, return_inverse=True)
     ends = vertex.ravel()[attributes.edge_verts(mesh)[attributes.corner_edges(mesh)]]
-    low, high = np.sort(ends, axis=1).astype(np.int64).T
-    key = (low * len(mesh.vertices) + high)[low != high]
-    return bool((np.unique(key, return_counts=True)[1] == 1).any())
+    sides, counts = np.unique(np.sort(ends, axis=1), axis=0, return_counts=True)
+    border = sides[(counts == 1) & (sides[:, 0] != sides[:, 1])]
+    if not len(border):
+        return False
+    middles = places[first][border].mean(axis=1)
+    tree = kdtree.KDTree(len(middles))
+    for i, middle in enumerate(middles.tolist()):
+        tree.insert(middle, i)
+    tree.balance()
+    least = _WELD * float(np.linalg.norm(np.ptp(places, axis=0)))
+    # The nearest is itself.
+    return any(tree.find_n(middle, 2)[-1][2] > least for middle in middles.tolist())
 
 
 def _file_of(material: bpy.types.Material) -> str | None:

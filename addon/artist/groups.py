@@ -44,9 +44,7 @@ def read(thing: bpy.types.Object) -> list[Group]:
     ]
 
 
-def write(
-    thing: bpy.types.Object, groups: list[Group], mix: Mix, limit: int | None = None
-) -> None:
+def write(thing: bpy.types.Object, groups: list[Group], mix: Mix, limit: int | None = None) -> None:
     """Gives an object with a new mesh the same groups.
 
     A vertex has no more weights of bones than `limit`, or without it than the old mesh has at most.

@@ -1,4 +1,4 @@
-//! Makes a manifold triangle mesh of what comes in, changing as little as it can.
+//! Makes manifold triangle meshes of what comes in, changing as little as it can.
 //!
 //! In order: equal points are welded; polygons lose corners that repeat, and go when fewer than
 //! three are left or the same polygon came before; polygons become triangles; triangles without
@@ -6,8 +6,11 @@
 //! majority; a vertex where several fans meet becomes one vertex for each.
 //!
 //! Welding can bring together what only touches, such as the edges of two boxes side by side.
-//! When an edge has more than two faces after welding, only vertices on the border of the mesh
-//! as given are welded: enough to close a soup of triangles, too little to glue closed parts.
+//! Where an edge has more than two faces after welding, what hangs together there is welded anew,
+//! only at vertices on the border of the mesh as given: enough to close a soup of triangles, too
+//! little to glue closed parts. Solids that share an edge even so part at it (`pairs`). A part with
+//! any other edge of more than two faces is a tangle; [`take_apart`] sets it apart, [`clean`]
+//! refuses the mesh. Borders that lie on each other within a distance are welded too (`seam`).
 //!
 //! Not done: holes stay open, parts that cross stay crossed, an inside-out part stays so.
 

@@ -95,7 +95,7 @@ fn has_area(mesh: &TriangleMesh, face: FaceId) -> bool {
 impl Surface {
     /// Half of what the Euler number lacks to that of a sphere with as many holes.
     fn genus(&self) -> i64 {
-        let n_edges = (3 * self.n_triangles + self.border.len()) / 2;
+        let n_edges = usize::midpoint(3 * self.n_triangles, self.border.len());
         let euler = self.n_vertices as i64 - n_edges as i64 + self.n_triangles as i64;
         (2 - self.n_loops as i64 - euler) / 2
     }
@@ -161,11 +161,13 @@ impl Told<'_> {
         let first = tangle.shared.first()?;
         let [n_faces, n_edges] = [first.n_faces, tangle.shared.len()];
         let [a, b] = first.ends;
-        let mut text =
-            format!("{n_faces} faces meet at the edge between vertices {a} and {b}; at most 2 can");
-        if n_edges > 1 {
-            text += &format!(" ({n_edges} edges of the part have more than 2 faces)");
-        }
+        let more = match n_edges {
+            1 => String::new(),
+            _ => format!(" ({n_edges} edges of the part have more than 2 faces)"),
+        };
+        let text = format!(
+            "{n_faces} faces meet at the edge between vertices {a} and {b}; at most 2 can{more}"
+        );
         let edges: Vec<_> = tangle.shared.iter().map(|edge| edge.ends).collect();
         let flaw = Flaw::SharedEdges { n_edges, n_faces };
         Some(Reason::new(self.mesh, &tangle.faces, &edges, flaw, text))

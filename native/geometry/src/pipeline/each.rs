@@ -65,12 +65,11 @@ impl Common<'_> {
             }
         }
         for (at, of, part, n_faces) in images {
-            made[at] = match (&made[of], self.plane) {
-                (Ok(of_made), Some(plane)) => Ok(mirror::image_of(of_made, of, plane.axis)),
-                _ => {
-                    let alone = "the part whose image it is could not be done";
-                    work.run(part, n_faces, &Role::Alone(Some(alone.to_owned())))?
-                }
+            made[at] = if let (Ok(of_made), Some(plane)) = (&made[of], self.plane) {
+                Ok(mirror::image_of(of_made, of, plane.axis))
+            } else {
+                let alone = "the part whose image it is could not be done".to_owned();
+                work.run(part, n_faces, &Role::Alone(Some(alone)))?
             };
         }
         Ok(Each(made))
@@ -145,7 +144,9 @@ impl Each {
         if !failed.is_empty() {
             parts.keep_failed(mesh, failed, settings)?;
             prepared = prepared.only(&is_left);
-            made.iter_mut().for_each(|part| part.rename_image(&is_left));
+            for part in &mut made {
+                part.rename_image(&is_left);
+            }
         }
         Ok((prepared, join::join(made)))
     }

@@ -68,14 +68,12 @@ use crate::{clean, measure, transfer};
 use clock::Clock;
 use density::Density;
 use each::Common;
-use even::Marked;
 use frame::Prepared;
 use join::Joined;
 use marks::Marks;
-use scored::Scored;
+use scored::{judge, sound};
 use split::Parts;
 use stay::{Elements, Staying};
-use warning::Made;
 
 /// The version of Orbflow.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -200,12 +198,13 @@ fn run(
     let stayed = (&parts, &staying);
     let carrying = || elements(&input, (&prepared, plane), &mut joined, stayed, &stage);
     let (mut made, carried) = clock.step("transfer", carrying)?;
-    let stage = progress.part("score", 0.92, 1.0);
-    let lost_marks = lost_marks(&prepared, (mesh, &marked), &joined, progress)?;
-    let old = parts.done_alone(given.mesh);
-    let against = (old.as_ref().unwrap_or(given.mesh), &prepared);
-    let told = (&joined.parts[..], plane, lost_marks);
-    let (scored, warnings) = judge(against, (&made.mesh, told), settings, (&mut clock, &stage))?;
+    let judged = judge(
+        (given.mesh, &parts),
+        (&prepared, plane),
+        (mesh, &marked),
+        (&made.mesh, &joined),
+        (settings, &mut clock, &progress.part("score", 0.92, 1.0)),
+    )?;
     staying.append(&given, &mut made);
     let report = Report {
         version: VERSION,
@@ -218,46 +217,15 @@ fn run(
         parts: joined.parts,
         kept: parts.kept,
         carried,
-        score: scored.score,
-        score_refused: scored.refused,
-        warnings,
+        score: judged.score,
+        score_refused: judged.refused,
+        warnings: judged.warnings,
         steps: clock.into_steps(),
         peak_memory_mb: peak_memory_mb(),
     };
     progress.at(1.0)?;
-    strict(&report)?;
+    let report = sound(report, settings)?;
     Ok(made.told(crosses, staying.n_faces(), report))
-}
-
-/// How good what was made is, and what is to be said of it.
-fn judge(
-    (old, prepared): (&PolygonMesh, &Prepared),
-    (mesh, (parts, plane, lost_marks)): (&PolygonMesh, (&[PartReport], Option<Plane>, f64)),
-    settings: &Settings,
-    (clock, progress): (&mut Clock, &Progress<'_>),
-) -> Result<(Scored, Vec<Warning>), Cancelled> {
-    let scored = Scored::new((old, prepared), mesh, settings, (clock, progress))?;
-    let made = Made {
-        mesh,
-        parts,
-        plane,
-        diagonal: prepared.frame.grow(DVec3::X).x,
-        glance: scored.glance,
-        lost_marks,
-    };
-    let warnings = warning::warnings(&made, settings, progress)?;
-    Ok((scored, warnings))
-}
-
-/// A strict run ends without a mesh where a warning is grave.
-fn strict(report: &Report) -> Result<(), Error> {
-    if report.settings.strict && report.warnings.iter().any(|warning| warning.grave) {
-        return Err(Error::Unsound {
-            warnings: report.warnings.clone(),
-            report: Box::new(report.clone()),
-        });
-    }
-    Ok(())
 }
 
 /// The parts of a mesh, and the mesh with its seams closed, where there are any.
@@ -270,18 +238,6 @@ fn taken_apart(
     let moved = apart.moved.take();
     let moved = moved.map(|places| mesh.with_positions(places));
     Ok((apart, moved))
-}
-
-/// The share of the marked edges that no edge lies along.
-fn lost_marks(
-    prepared: &Prepared,
-    marked: (&PolygonMesh, &[[VertexId; 2]]),
-    joined: &Joined,
-    progress: &Progress<'_>,
-) -> Result<f64, Cancelled> {
-    let marks = Marks::new(marked, &prepared.frame);
-    let marked = Marked::new(&prepared.mesh, &marks.on(&prepared.mesh));
-    marked.lost((&joined.mesh, &joined.features), progress)
 }
 
 /// What was made, with the artist's data on it, and what became of edges that were to be carried.

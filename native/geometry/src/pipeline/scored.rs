@@ -1,60 +1,127 @@
 //! How good a result is: the score, or the little of it that warnings are made of.
 
+use glam::DVec3;
+
 use super::clock::Clock;
+use super::even::Marked;
 use super::frame::Prepared;
-use super::settings::Settings;
+use super::join::Joined;
+use super::marks::Marks;
+use super::mirror::Plane;
+use super::split::Parts;
+use super::warning::{Made, Warning, warnings};
+use super::{Error, Report, Settings};
 use crate::clean;
 use crate::measure::topology_of_triangles;
-use crate::mesh::PolygonMesh;
+use crate::mesh::{PolygonMesh, VertexId};
 use crate::progress::{Cancelled, Progress};
-use crate::score::{self, Glance, Reference, Score};
+use crate::score::{self, Reference, Score};
 
-/// What is measured of a result.
-pub struct Scored {
+/// A result and what it is measured against.
+struct Judging<'a> {
+    /// The parts of the input that were to be rebuilt, as they came.
+    input: &'a PolygonMesh,
+    prepared: &'a Prepared,
+    /// The marked edges of a mesh.
+    marked: (&'a PolygonMesh, &'a [[VertexId; 2]]),
+    /// What was made of them, in the input's coordinates.
+    output: &'a PolygonMesh,
+    joined: &'a Joined,
+    plane: Option<Plane>,
+}
+
+/// What was found.
+#[derive(Default)]
+pub struct Judged {
     /// None when it was not asked for or could not be measured.
     pub score: Option<Score>,
     /// Why it could not be measured.
     pub refused: Option<String>,
-    /// None when it could not be measured.
-    pub glance: Option<Glance>,
+    pub warnings: Vec<Warning>,
 }
 
-impl Scored {
-    /// Measures a result against its input, whose topology is that of the prepared mesh.
-    ///
-    /// A result that cannot be scored is a result all the same; only a cancellation ends the run.
-    pub fn new(
-        (input, prepared): (&PolygonMesh, &Prepared),
-        output: &PolygonMesh,
+/// Measures a result and says what is not as it was to be.
+///
+/// One that cannot be scored is a result all the same; only a cancellation ends the run.
+pub fn judge(
+    (given, parts): (&PolygonMesh, &Parts),
+    (prepared, plane): (&Prepared, Option<Plane>),
+    marked: (&PolygonMesh, &[[VertexId; 2]]),
+    (output, joined): (&PolygonMesh, &Joined),
+    (settings, clock, progress): (&Settings, &mut Clock, &Progress<'_>),
+) -> Result<Judged, Cancelled> {
+    let done = parts.done_alone(given);
+    let judging = Judging {
+        input: done.as_ref().unwrap_or(given),
+        prepared,
+        marked,
+        output,
+        joined,
+        plane,
+    };
+    judging.judge(settings, clock, progress)
+}
+
+impl Judging<'_> {
+    fn judge(
+        self,
         settings: &Settings,
-        (clock, progress): (&mut Clock, &Progress<'_>),
-    ) -> Result<Self, Cancelled> {
-        let reference = Reference {
-            mesh: input,
-            topology: Some(topology_of_triangles(&prepared.mesh)),
-        };
-        let mut scored = Self {
-            score: None,
-            refused: None,
-            glance: None,
-        };
-        let Some(wanted) = settings.score() else {
-            let found = clock.step("score", || score::glance(input, output, progress));
-            scored.glance = told(found)?.ok();
-            return Ok(scored);
-        };
-        let found = clock.step("score", || {
-            score::score(reference, output, &wanted, progress)
-        });
-        match told(found)? {
-            Ok(score) => {
-                scored.glance = Some(score.glance);
-                scored.score = Some(score);
+        clock: &mut Clock,
+        progress: &Progress<'_>,
+    ) -> Result<Judged, Cancelled> {
+        let mut judged = Judged::default();
+        let glance = match settings.score() {
+            None => {
+                told(clock.step("score", || score::glance(self.input, self.output, progress)))?.ok()
             }
-            Err(error) => scored.refused = Some(error.to_string()),
-        }
-        Ok(scored)
+            Some(wanted) => match told(clock.step("score", || self.score(&wanted, progress)))? {
+                Ok(score) => Some(judged.score.insert(score).glance),
+                Err(error) => {
+                    judged.refused = Some(error.to_string());
+                    None
+                }
+            },
+        };
+        let made = Made {
+            mesh: self.output,
+            parts: &self.joined.parts,
+            plane: self.plane,
+            diagonal: self.prepared.frame.grow(DVec3::X).x,
+            glance,
+            lost_marks: self.lost_marks(progress)?,
+        };
+        judged.warnings = warnings(&made, settings, progress)?;
+        Ok(judged)
     }
+
+    fn score(
+        &self,
+        wanted: &score::Settings,
+        progress: &Progress<'_>,
+    ) -> Result<Score, score::Error> {
+        let reference = Reference {
+            mesh: self.input,
+            topology: Some(topology_of_triangles(&self.prepared.mesh)),
+        };
+        score::score(reference, self.output, wanted, progress)
+    }
+
+    /// The share of the marked edges that no edge lies along.
+    fn lost_marks(&self, progress: &Progress<'_>) -> Result<f64, Cancelled> {
+        let Prepared { mesh, frame, .. } = self.prepared;
+        let marked = Marked::new(mesh, &Marks::new(self.marked, frame).on(mesh));
+        marked.lost((&self.joined.mesh, &self.joined.features), progress)
+    }
+}
+
+/// The report of a result that is sound, or of any where nobody is strict.
+pub fn sound(report: Report, settings: &Settings) -> Result<Report, Error> {
+    if !settings.strict || report.warnings.iter().all(|warning| !warning.grave) {
+        return Ok(report);
+    }
+    let warnings = report.warnings.clone();
+    let report = Box::new(report);
+    Err(Error::Unsound { warnings, report })
 }
 
 fn told<T>(found: Result<T, score::Error>) -> Result<Result<T, score::Error>, Cancelled> {

@@ -138,8 +138,8 @@ impl Fault {
                 format!("{n_faces} faces were made, {n_asked} were asked for")
             }
             Self::Flow { n_parts, reason } => {
-                let (parts, do_) = of(*n_parts, "part", "does", "do");
-                format!("the edges of {parts} {do_} not follow the shape ({reason})")
+                let (parts, _) = of(*n_parts, "part", "", "");
+                format!("the edges of {parts} do not follow the shape ({reason})")
             }
             Self::Mirror { n_parts, reason } => {
                 let (parts, are) = of(*n_parts, "part", "is", "are");

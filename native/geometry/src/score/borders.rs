@@ -61,3 +61,41 @@ fn samples(surface: &Surface, spacing: f64) -> Vec<DVec3> {
     };
     border().flat_map(along).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::elementary::{cos, sin};
+    use crate::mesh::PolygonMesh;
+    use crate::shapes;
+
+    fn between(input: &PolygonMesh, output: &PolygonMesh) -> BorderDistance {
+        let progress = Progress::none();
+        let [a, b] = [input, output].map(|mesh| Surface::new(mesh, &progress).unwrap().unwrap());
+        borders(&a, &b, &progress).unwrap()
+    }
+
+    #[test]
+    fn borders_are_as_far_apart_as_their_circles() {
+        let ring = |radius: f64, n: u32| {
+            let at = |i: u32, z: f64| {
+                let angle = std::f64::consts::TAU * f64::from(i) / f64::from(n);
+                DVec3::new(radius * cos(angle), radius * sin(angle), z)
+            };
+            let positions = (0..n).map(|i| at(i, 0.0)).chain((0..n).map(|i| at(i, 1.0)));
+            let quad = |i: u32| [i, (i + 1) % n, (i + 1) % n + n, i + n];
+            let faces: Vec<[u32; 4]> = (0..n).map(quad).collect();
+            PolygonMesh::from_faces(positions.collect(), &faces).unwrap()
+        };
+        let found = between(&ring(1.0, 200), &ring(1.1, 90));
+        let wanted = 100.0 * 0.1 / 3.0;
+        for found in [found.border_mean_pct, found.border_hausdorff_pct] {
+            assert!(
+                found.is_some_and(|far| (far - wanted).abs() < 0.03 * wanted),
+                "{found:?}"
+            );
+        }
+        let closed = between(&ring(1.0, 20), &shapes::polygons(&shapes::sphere(3)));
+        assert_eq!(closed, BorderDistance::default());
+    }
+}

@@ -67,10 +67,12 @@ fn curvature(
     let is_large = input.triangles.len() > MOST_TRIANGLES && scale > PATCHES * edge;
     let positions = input.mesh.positions().to_vec();
     let triangles = input.triangles.clone();
-    let measure = move || match is_large {
-        true => CurvatureField::in_patches(&positions, &triangles, scale),
-        false => CurvatureField::new(&positions, &triangles, scale),
+    let measure = if is_large {
+        CurvatureField::in_patches
+    } else {
+        CurvatureField::new
     };
+    let measure = move || measure(&positions, &triangles, scale);
     Ok(watched(measure, progress)??)
 }
 

@@ -306,30 +306,6 @@ fn the_topology_is_that_of_the_cleaned_input() {
 }
 
 #[test]
-fn borders_are_as_far_apart_as_their_circles() {
-    let ring = |radius: f64, n: u32| {
-        let at = |i: u32, z: f64| {
-            let angle = std::f64::consts::TAU * f64::from(i) / f64::from(n);
-            DVec3::new(radius * cos(angle), radius * sin(angle), z)
-        };
-        let positions = (0..n).map(|i| at(i, 0.0)).chain((0..n).map(|i| at(i, 1.0)));
-        let quad = |i: u32| [i, (i + 1) % n, (i + 1) % n + n, i + n];
-        let faces: Vec<[u32; 4]> = (0..n).map(quad).collect();
-        PolygonMesh::from_faces(positions.collect(), &faces).unwrap()
-    };
-    let found = scored(&ring(1.0, 200), &ring(1.1, 90)).border_distance;
-    let wanted = 100.0 * 0.1 / 3.0;
-    for found in [found.border_mean_pct, found.border_hausdorff_pct] {
-        assert!(
-            found.is_some_and(|far| (far - wanted).abs() < 0.03 * wanted),
-            "{found:?}"
-        );
-    }
-    let closed = scored(&ring(1.0, 20), &quad_sphere(3)).border_distance;
-    assert_eq!(closed, BorderDistance::default());
-}
-
-#[test]
 fn threads_do_not_change_a_bit() {
     let [input, output] = [12, 9].map(|n| shapes::polygons(&shapes::limbs(1, n)));
     let with = |n| {

@@ -1,5 +1,6 @@
 //! Meshes of several parts: what can be done is done, the rest stays as it was and is named.
 
+mod carried;
 #[path = "../common/mod.rs"]
 mod common;
 mod mixed;
@@ -9,7 +10,7 @@ use mixed::{Mixed, ball, cube, kinds, remesh, settings, split_along, touching_bl
 use orbflow_geometry::embed::{OffsetPredictor, PredictError, Proposal, Solver};
 use orbflow_geometry::hierarchy::CollapseHierarchy;
 use orbflow_geometry::measure::topology;
-use orbflow_geometry::mesh::{Id, PolygonMesh, VertexId};
+use orbflow_geometry::mesh::{FaceId, Id, PolygonMesh};
 use orbflow_geometry::pipeline::{
     self, Error, Flaw, Input, Kind, Outcome, Remeshed, Settings, SmallParts,
 };
@@ -36,7 +37,7 @@ fn stays(result: &Remeshed, mesh: &PolygonMesh, faces: impl IntoIterator<Item = 
     let first = result.mesh.n_faces() - faces.len();
     for (i, &face) in faces.iter().enumerate() {
         let bits = |mesh: &PolygonMesh, face| {
-            let corners = mesh.faces().nth(face).unwrap().iter();
+            let corners = mesh.face(FaceId::from_index(face)).iter();
             let corners = corners.map(|&v| mesh.position(v).to_array().map(f64::to_bits));
             corners.collect::<Vec<_>>()
         };
@@ -278,70 +279,6 @@ fn a_part_whose_run_fails_stays_as_it_was() {
         Err(Error::Refused { kept, .. }) => assert_eq!(kept.len(), 3),
         other => panic!("{other:?}"),
     }
-}
-
-#[test]
-fn what_lies_on_kept_faces_comes_with_them() {
-    let mut mixed = Mixed::default();
-    let quads: [&[u32]; 2] = [&[0, 1, 2, 3], &[3, 2, 4]];
-    let points = [
-        [2., 0., 0.],
-        [2., 1., 0.],
-        [2., 1., 1.],
-        [2., 0., 1.],
-        [2., 0.5, 2.],
-    ];
-    mixed.add_faces(&points, &quads);
-    mixed.add(&cube(3), DVec3::ZERO, 1.0);
-    let mesh = mixed.mesh();
-    let materials: Vec<i32> = (0..mesh.n_faces() as i32).map(|i| i - 7).collect();
-    let carried = [[5, 6], [2, 3], [0, 2], [4, 2]].map(|ends: [u32; 2]| ends.map(VertexId));
-    let input = Input {
-        materials: Some(&materials),
-        carried: &carried,
-        cuts: Some(&[]),
-        ..Input::new(&mesh)
-    };
-    let result = pipeline::remesh(input, &settings(60), &Solver::default(), &Progress::none());
-    let result = result.unwrap();
-    stays(&result, &mesh, [0, 1]);
-    let n = result.mesh.n_faces();
-    assert_eq!(result.materials.unwrap()[n - 2..], [-7, -6]);
-    let origins = result.origins.unwrap();
-    assert_eq!(
-        origins.faces[n - 2..]
-            .iter()
-            .map(|f| f.0)
-            .collect::<Vec<_>>(),
-        [0, 1]
-    );
-    let n_corners = result.mesh.corners().len();
-    assert_eq!(origins.corners.len(), n_corners);
-    assert_eq!(origins.vertices.len(), result.mesh.n_vertices());
-    for (i, &v) in result.mesh.corners().iter().enumerate().skip(n_corners - 7) {
-        let place = result.mesh.position(v);
-        for origin in [origins.corners[i], origins.vertices[v.index()]] {
-            assert_eq!(origin.weights[0], 1.0);
-            let corner = mesh.corners()[origin.corners[0] as usize];
-            assert_eq!(mesh.position(corner), place);
-        }
-        let own = i - (n_corners - 7);
-        assert_eq!(origins.corners[i].corners[0] as usize, own);
-    }
-    // An edge between corners that are not neighbours is none, and lies on no face.
-    let first = result.mesh.n_vertices() as u32 - 5;
-    let named = result.carried.iter().filter(|edge| edge.ends[0].0 >= first);
-    let mut named: Vec<_> = named
-        .map(|edge| (edge.from, edge.ends.map(|v| v.0 - first)))
-        .collect();
-    named.sort_unstable();
-    assert_eq!(named, [(1, [2, 3]), (3, [2, 4])]);
-    assert!(
-        result
-            .report
-            .carried
-            .is_some_and(|told| told.n_edges == result.carried.len())
-    );
 }
 
 #[test]

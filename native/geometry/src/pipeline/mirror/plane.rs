@@ -194,12 +194,12 @@ fn named(
         return Ok(in_middle);
     }
     let (off_origin, in_origin) = measured(origin)?;
-    // A mesh that is its own image in one of the two is not made so in the other.
-    let is_only = off_middle.is_symmetric() && !off_origin.is_symmetric();
     let is_clearly_better = off_middle.mean < CLEARLY * off_origin.mean;
-    let takes_middle = match off_origin.is_symmetric() == off_middle.is_symmetric() {
-        true => is_clearly_better,
-        false => is_only,
+    // A mesh that is its own image in one of the two is not made so in the other.
+    let takes_middle = if off_origin.is_symmetric() == off_middle.is_symmetric() {
+        is_clearly_better
+    } else {
+        off_middle.is_symmetric()
     };
     Ok(if takes_middle { in_middle } else { in_origin })
 }
