@@ -49,7 +49,6 @@ def done(outcome: Done, report: dict[str, Any], old: Before) -> Told:
     """Tells of a task that was done; `report` is what the panel keeps of it."""
     task = outcome.task
     thing = bpy.data.objects[task.name, None]
-    report.setdefault("warnings", [])
     report["n_hidden"] = old.n_hidden
     report["nodes"] = [each.name for each in thing.modifiers if _has_nodes(each)]
     if old.print:

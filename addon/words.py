@@ -163,8 +163,7 @@ def _reasons(parts: list[dict[str, Any]]) -> list[str]:
 def exceptions(report: dict[str, Any]) -> list[str]:
     """In words what else is otherwise than was asked for."""
     lost = ", ".join(sorted(set(report["lost"])))
-    told = [_without_flow(report), _without_mirror(report), _without_marks(report)]
-    told += [_without_network(report), f"not carried over: {lost}" if lost else ""]
+    told = [_without_marks(report), f"not carried over: {lost}" if lost else ""]
     told += [_cleaned(report), _welded(report), _shown(report), *_modifiers(report)]
     return [each for each in told if each]
 
@@ -198,43 +197,12 @@ def _modifiers(report: dict[str, Any]) -> list[str]:
 
 
 def _without_marks(report: dict[str, Any]) -> str:
-    """Which share of what was left on edges is on no edge of the result."""
+    """Which share of what was left on edges is on no edge of the result, unless a warning says."""
+    if any(each["kind"] == "lines" for each in report["warnings"]):
+        return ""
     gone = 100 - report["carried"]["length_pct"] if report["carried"] else 0
     marks = "marks of edges"
     if "custom normals" in report["lost"]:
         marks += " and breaks of custom normals"
     # Chords are shorter than what they stand for.
     return f"{gone:.0f} % of the {marks} are gone: no edge lies there" if gone > 5 else ""
-
-
-def _without_flow(report: dict[str, Any]) -> str:
-    """Which parts got the quad sphere because their quads could not flow, and why the first."""
-    return _refused(report, "flow", "quad sphere instead of flow")
-
-
-def _without_mirror(report: dict[str, Any]) -> str:
-    """Which parts could not be made symmetric, and why the first."""
-    return _refused(report, "mirrored", "not symmetric")
-
-
-def _without_network(report: dict[str, Any]) -> str:
-    """Which parts got the solver's map because a proposal was of no use."""
-    parts = report["parts"]
-    given_up = [part for part in parts if part["embedding"]["repair"]["fell_back_to_solver"]]
-    if not given_up:
-        return ""
-    of = _of_parts(given_up, parts)
-    return f"solver instead of network{of}: the proposal was beyond repair"
-
-
-def _refused(report: dict[str, Any], what: str, words: str) -> str:
-    """In how many parts something was refused, and why in the first; empty where in none."""
-    parts = report["parts"]
-    refused = [part for part in parts if (part[what] or {}).get("status") == "refused"]
-    if not refused:
-        return ""
-    return f"{words}{_of_parts(refused, parts)}: {refused[0][what]['reason']}"
-
-
-def _of_parts(some: list[dict[str, Any]], parts: list[dict[str, Any]]) -> str:
-    return f" in {len(some)} of {len(parts)} parts" if len(parts) > 1 else ""

@@ -260,11 +260,9 @@ def test_a_fallback_is_named_in_the_panel_and_the_info_line(open_fixture: Open) 
     press.orbflow_remesh(faces=200)
     panel, words = addon("panel"), addon("words")
     report = addon("runs").last_report(first.name)
-    assert words.exceptions(report) == []
-    refused = {"status": "refused", "reason": "no whole periods: none"}
-    report["parts"][0]["flow"] = refused
-    told = "quad sphere instead of flow: no whole periods: none"
-    assert words.exceptions(report) == [told]
+    assert words.warnings(report) == []
+    told = "the edges of 1 part do not follow the shape (no whole periods)"
+    report["warnings"] = [{"kind": "flow", "text": told, "grave": False}]
     assert words.sentence(report).endswith(f"; {told}")
     shown: list[str] = []
 
@@ -276,7 +274,10 @@ def test_a_fallback_is_named_in_the_panel_and_the_info_line(open_fixture: Open) 
             return self
 
     panel._draw_score(Column(), report, 36)
-    assert shown[:2] == ["INFO quad sphere instead of flow: no", "BLANK1 whole periods: none"]
+    assert shown[:2] == [
+        "ERROR the edges of 1 part do not follow",
+        "BLANK1 the shape (no whole periods)",
+    ]
 
 
 def test_a_symmetric_mesh_stays_so_unasked_and_the_panel_says_across_what(

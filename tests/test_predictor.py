@@ -118,7 +118,7 @@ def test_the_add_on_needs_no_file_and_the_panel_tells_what_was_proposed(open_fix
     assert press.orbflow_remesh(predictor="NETWORK", faces=200) == {"FINISHED"}
     panel, words = addon("panel"), addon("words")
     report = addon("runs").last_report("First")
-    assert words.exceptions(report) == []
+    assert words.warnings(report) + words.exceptions(report) == []
     shown = dict(panel.rows(report))
     proposal = report["embedding"]["proposal"]
     assert shown["Proposed by"] == "network"
@@ -127,9 +127,6 @@ def test_the_add_on_needs_no_file_and_the_panel_tells_what_was_proposed(open_fix
     assert shown["Vertices repaired"].endswith(f" of {proposal['n_vertices']:,}")
     assert shown["Distortion"].startswith(f"{proposal['energy']:.2f} → ")
     assert shown["Relaxations"] == f"{report['embedding']['n_relaxations']:,}"
-    report["parts"][0]["embedding"]["repair"]["fell_back_to_solver"] = True
-    told = "solver instead of network: the proposal was beyond repair"
-    assert words.exceptions(report) == [told]
     assert press.orbflow_remesh(predictor="SOLVER", faces=200) == {"FINISHED"}
     assert "Proposed by" not in dict(panel.rows(addon("runs").last_report("First")))
 
