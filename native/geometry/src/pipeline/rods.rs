@@ -144,6 +144,7 @@ fn report(rod: &Rod, n_wanted: usize) -> flow::Report {
             spiral: rod.strips.spiral,
             loops: rod.strips.loops,
             n_doubled: 0,
+            n_unmet: 0,
         },
         n_thinned: 0,
         n_trials: 0,
