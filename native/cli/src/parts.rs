@@ -1,7 +1,7 @@
 //! What is asked for about the parts of a mesh, and what is told of those that were not remeshed.
 
 use clap::Args;
-use orbflow_geometry::pipeline::{Kept, Outcome, Settings, SmallParts};
+use orbflow_geometry::pipeline::{Flaw, Kept, Outcome, Reason, Settings, SmallParts};
 
 use crate::parsers::{percent, small_parts, weld};
 use crate::place::Place;
@@ -79,15 +79,17 @@ pub fn lines(kept: &[Kept], what: &str) -> Vec<String> {
 
 fn told_of_small(small: &[&Kept]) -> Option<String> {
     let first = small.first()?;
+    let is_size = |reason: &&Reason| matches!(reason.flaw, Flaw::Small { .. });
+    let why = first.reasons.iter().find(is_size)?;
     let faces: usize = small.iter().map(|kept| kept.n_faces).sum();
     let [parts, faces] = [count(small.len(), "part"), count(faces, "face")];
     let what = match first.outcome {
-        Outcome::Kept => "small: kept as they were",
-        Outcome::Dropped => "small: dropped",
+        Outcome::Kept => "kept as they were",
+        Outcome::Dropped => "dropped",
     };
+    let why = &why.text;
     Some(format!(
-        "{parts} with {faces} too {what}; the first: {}",
-        first.text()
+        "{parts} with {faces} too small: {what}; the first: {why}"
     ))
 }
 
