@@ -11,7 +11,7 @@ const MOST_LINES: usize = 20;
 
 /// What becomes of parts that are small, open or cannot be done.
 #[derive(Args, Clone, Copy, Debug)]
-pub struct Parts {
+pub struct OfParts {
     /// What becomes of parts that are too small: they stay as they were, or go
     #[arg(long, default_value = SmallParts::default().name(), value_parser = small_parts())]
     pub small_parts: SmallParts,
@@ -32,15 +32,15 @@ pub struct Parts {
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Weld(pub Option<f64>);
 
-impl Parts {
+impl OfParts {
     /// Settings with what is asked for here.
-    pub fn asked(&self, settings: Settings) -> Settings {
+    pub fn asked(&self, settings: &Settings) -> Settings {
         Settings {
             small_parts: self.small_parts,
             small_size: self.small_size,
             weld: self.weld.0,
             strict: self.strict,
-            ..settings
+            ..settings.clone()
         }
     }
 }
