@@ -9,7 +9,7 @@ use orbflow_geometry::pipeline::{Kind, Mirror, Primitive, Settings, Style};
 use orbflow_geometry::score;
 
 use crate::parsers::{degrees, format, kind, mirror, n_faces, primitive, share};
-use crate::parts::Parts;
+use crate::parts::OfParts;
 use crate::place::Place;
 
 const AFTER_HELP: &str = "\
@@ -125,7 +125,7 @@ pub struct Wanted {
     #[arg(long, default_value = "auto", value_parser = mirror())]
     pub mirror: Mirror,
     #[command(flatten)]
-    pub parts: Parts,
+    pub parts: OfParts,
 }
 
 /// How quads flow.
@@ -263,7 +263,7 @@ pub fn output_format(place: &Place, wanted: Option<Format>) -> Option<Format> {
 impl Wanted {
     /// What the core is asked for.
     pub fn settings(&self, work: Work, files: &Rebuilt) -> Settings {
-        self.parts.asked(Settings {
+        self.parts.asked(&Settings {
             faces: self.faces,
             kind: self.kind(),
             primitive: self.primitive,

@@ -1,7 +1,7 @@
 //! What is asked for about the parts of a mesh, and what is told of those that were not remeshed.
 
 use clap::Args;
-use orbflow_geometry::pipeline::{Kept, Outcome, Settings, SmallParts};
+use orbflow_geometry::pipeline::{Flaw, Kept, Outcome, Reason, Settings, SmallParts};
 
 use crate::parsers::{percent, small_parts, weld};
 use crate::place::Place;
@@ -11,7 +11,7 @@ const MOST_LINES: usize = 20;
 
 /// What becomes of parts that are small, open or cannot be done.
 #[derive(Args, Clone, Copy, Debug)]
-pub struct Parts {
+pub struct OfParts {
     /// What becomes of parts that are too small: they stay as they were, or go
     #[arg(long, default_value = SmallParts::default().name(), value_parser = small_parts())]
     pub small_parts: SmallParts,
@@ -33,15 +33,15 @@ pub struct Parts {
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Weld(pub Option<f64>);
 
-impl Parts {
+impl OfParts {
     /// Settings with what is asked for here.
-    pub fn asked(&self, settings: Settings) -> Settings {
+    pub fn asked(&self, settings: &Settings) -> Settings {
         Settings {
             small_parts: self.small_parts,
             small_size: self.small_size,
             weld: self.weld.0,
             strict: self.strict,
-            ..settings
+            ..settings.clone()
         }
     }
 }
@@ -80,15 +80,17 @@ pub fn lines(kept: &[Kept], what: &str) -> Vec<String> {
 
 fn told_of_small(small: &[&Kept]) -> Option<String> {
     let first = small.first()?;
+    let is_size = |reason: &&Reason| matches!(reason.flaw, Flaw::Small { .. });
+    let why = first.reasons.iter().find(is_size)?;
     let faces: usize = small.iter().map(|kept| kept.n_faces).sum();
     let [parts, faces] = [count(small.len(), "part"), count(faces, "face")];
     let what = match first.outcome {
-        Outcome::Kept => "small: kept as they were",
-        Outcome::Dropped => "small: dropped",
+        Outcome::Kept => "kept as they were",
+        Outcome::Dropped => "dropped",
     };
+    let why = &why.text;
     Some(format!(
-        "{parts} with {faces} too {what}; the first: {}",
-        first.text()
+        "{parts} with {faces} too small: {what}; the first: {why}"
     ))
 }
 

@@ -9,18 +9,18 @@ use support::{Folder, ball, run};
 
 /// A ball, and so many stray triangles of a size beside it.
 fn with_scraps(n: usize, size: f64) -> String {
-    let mut text = String::new();
-    for i in 0..n {
+    let triangle = |i: usize| {
         let (x, s) = (3.0 + i as f64, size);
-        text += &format!("v {x} 0 0\nv {} 0 0\nv {x} {s} 0\n", x + s);
-    }
+        format!("v {x} 0 0\nv {} 0 0\nv {x} {s} 0\n", x + s)
+    };
+    let text: String = (0..n).map(triangle).collect();
     let (first, faces) = ball("").split_once("f ").map_or_else(
         || panic!("a ball has faces"),
         |(vertices, faces)| (vertices.to_owned(), format!("f {faces}")),
     );
     let moved = faces.lines().map(|line| {
         let corners = line.split(' ').skip(1);
-        let corner = |word: &str| (word.parse::<usize>().unwrap() + 3 * n).to_string();
+        let corner = |word: &str| (word.parse::<usize>().expect("a number") + 3 * n).to_string();
         let corners: Vec<String> = corners.map(corner).collect();
         format!("f {}\n", corners.join(" "))
     });
@@ -107,10 +107,11 @@ fn seams_are_welded_and_told() {
     for (face, quad) in quads.iter().enumerate() {
         text.extend(quad.iter().map(|&i| corner(i, face)));
     }
-    for face in 0..6 {
+    let face = |face: usize| {
         let [a, b, c, d] = [1, 2, 3, 4].map(|i| 4 * face + i);
-        text += &format!("f {a} {b} {c} {d}\n");
-    }
+        format!("f {a} {b} {c} {d}\n")
+    };
+    text.extend((0..6).map(face));
     let input = folder.write("seams.obj", &text);
     let output = folder.path("out.obj");
     let remesh = ["remesh", &input, &output, "--faces", "54"];
