@@ -175,7 +175,7 @@ def _named(points: NDArray[np.float32], ends: Int) -> tuple[Index, dict[int, lis
     """
     names = ends.astype(np.intp)
     single = _alone(names)
-    places = _places(points, np.unique(ends[single]))
+    places = _places(points, np.unique(names[single]))
     names[single] = len(points) + places[ends[single]]
     border = single[_alone(names[single])]
     twins = _twins(points, np.unique(places[ends[border]]))
