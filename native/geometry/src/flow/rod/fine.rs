@@ -165,8 +165,8 @@ impl Cutting {
         Some(())
     }
 
-    /// Takes the other diagonal of the two triangles at an edge, which lie in a plane, if it is shorter
-    /// and both stay whole; false if not.
+    /// Takes the other diagonal of the two triangles at an edge, which lie in a plane, if it is
+    /// shorter and both stay whole; false if not.
     fn turn(&mut self, [a, b]: [u32; 2]) -> Option<bool> {
         let [(near, c), (far, d)] = self.sides([a, b])?;
         let area = |corners: [u32; 3]| {
