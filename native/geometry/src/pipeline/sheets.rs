@@ -239,7 +239,7 @@ mod tests {
         let mesh = mapped_cube(6, wave);
         let input = polygons(&mesh);
         let settings = Settings {
-            faces: 240,
+            faces: 400,
             ..Settings::default()
         };
         let run = remesh(
