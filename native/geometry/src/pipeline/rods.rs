@@ -24,8 +24,8 @@ use crate::progress::{Cancelled, Progress};
 use crate::sphere_map::SphereMap;
 use crate::{embed, flow, sphere};
 
-/// A part this many girths long is a rod before anything else is tried: a round one is then 25 times
-/// as long as thick. Shorter ones flow well mostly.
+/// A part this many girths long is a rod before anything else is tried: a round one is then 25
+/// times as long as thick. Shorter ones flow well mostly.
 const CLEAR: f64 = 8.0;
 /// Larger parts are read off the map's mesh, which is decimated.
 const MOST_FACES: usize = 60_000;

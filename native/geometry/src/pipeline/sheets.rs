@@ -1,9 +1,9 @@
 //! Thin closed sheets: cloth, fins, blades.
 //!
-//! The rim of a sheet a twentieth as thick as a quad is long are two sharp lines with nothing between
-//! them: triangles that show the sheet do not show its rim, and quads cut it into teeth. So the
-//! sheet is made as thick as a quad first, by moving its sides apart; it is a box then, and one row of
-//! quads goes along its rim. They are brought back side by side.
+//! The rim of a sheet a twentieth as thick as a quad is long are two sharp lines with nothing
+//! between them: triangles that show the sheet do not show its rim, and quads cut it into teeth. So
+//! the sheet is made as thick as a quad first, by moving its sides apart; it is a box then, and one
+//! row of quads goes along its rim. They are brought back side by side.
 
 use glam::DVec3;
 
@@ -25,8 +25,8 @@ use crate::sphere_map::SphereMap;
 
 /// Thicker sheets, in edges of quads, flow as they are.
 const THIN: f64 = 0.4;
-/// How thick they are made, in edges of quads: below, lines of the two sides end too near each other;
-/// above, two rows of quads go along the rim.
+/// How thick they are made, in edges of quads: below, lines of the two sides end too near each
+/// other; above, two rows of quads go along the rim.
 const THICK: f64 = 1.0;
 /// A sheet has this share of its area on its sides.
 const SIDES: f64 = 0.7;
@@ -118,8 +118,8 @@ impl Thick {
         })
     }
 
-    /// The quads of one side on both; none where they are no sides with one row between, or where the
-    /// count would be off.
+    /// The quads of one side on both; none where they are no sides with one row between, or where
+    /// the count would be off.
     fn alike(
         &self,
         (quads, target): (&Deformed, &Target),
@@ -239,7 +239,7 @@ mod tests {
         let mesh = mapped_cube(6, wave);
         let input = polygons(&mesh);
         let settings = Settings {
-            faces: 240,
+            faces: 400,
             ..Settings::default()
         };
         let run = remesh(

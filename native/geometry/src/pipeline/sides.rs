@@ -1,8 +1,8 @@
 //! The two sides of a thin sheet: the quads of one are laid on the other too.
 //!
 //! Quads that differ from side to side cross where the sheet is bent, for it is thinner than a bent
-//! quad is deep. So one side's are kept, the other side gets the same, and a row of quads along the rim
-//! joins them: the hem is straight, and the sheet as thick everywhere as it was.
+//! quad is deep. So one side's are kept, the other side gets the same, and a row of quads along the
+//! rim joins them: the hem is straight, and the sheet as thick everywhere as it was.
 
 use std::collections::{HashMap, HashSet};
 

@@ -1,4 +1,5 @@
-//! The quads of a rod, and their places on the sphere: rings are circles of latitude, the ends caps.
+//! The quads of a rod, and their places on the sphere: rings are circles of latitude, the ends
+//! caps.
 
 use glam::DVec3;
 

@@ -1,7 +1,7 @@
 //! How high every place of a rod is, from one end to the other.
 //!
-//! The height is harmonic but for two vertices, the ends: no other place is higher or lower than all
-//! around it, and on a sphere there is then no saddle either. So every level is one closed line
+//! The height is harmonic but for two vertices, the ends: no other place is higher or lower than
+//! all around it, and on a sphere there is then no saddle either. So every level is one closed line
 //! that goes round the rod.
 
 use std::cmp::Reverse;

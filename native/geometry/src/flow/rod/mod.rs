@@ -1,18 +1,19 @@
 //! Rods: parts that are one limb from end to end, as poles, wires, springs and cables are.
 //!
-//! A field of crosses and a flat metric ask for a surface whose triangles show its width; a wire five
-//! hundred times as long as thick has none. It needs none either: a [`height`] that is harmonic but
-//! for the two ends has no saddle, so each of its levels is one closed line round the rod.
+//! A field of crosses and a flat metric ask for a surface whose triangles show its width; a wire
+//! five hundred times as long as thick has none. It needs none either: a *height* that is
+//! harmonic but for the two ends has no saddle, so each of its levels is one closed line round the
+//! rod.
 //!
 //! ```text
-//! short triangles ─▶ height ─▶ sections, sharp lines ─▶ how many round, which levels ─▶ rings, ends
-//!       fine           height     section  lines              plan                       rings  ball
+//! triangles ─▶ height ─▶ sections, sharp lines ─▶ how many round, which levels ─▶ rings, ends
+//!   fine       height     section     lines                  plan                 rings  ball
 //! ```
 //!
-//! Rings of vertices lie on sections, a rectangle of quads closes each end: eight irregular vertices,
-//! the fewest there can be. Sharp lines along the rod and round it get edges. Where the count is too
-//! short for squares, quads are long rather than few round. On the sphere rings are circles of
-//! latitude: what covers the sphere once is closed and whole.
+//! Rings of vertices lie on sections, a rectangle of quads closes each end: eight irregular
+//! vertices, the fewest there can be. Sharp lines along the rod and round it get edges. Where the
+//! count is too short for squares, quads are long rather than few round. On the sphere rings are
+//! circles of latitude: what covers the sphere once is closed and whole.
 //!
 //! Not done here: rods that branch, and knobs on rods, which rings do not show.
 
@@ -116,7 +117,8 @@ pub enum RodError {
     Mesh(#[from] PolygonMeshError),
 }
 
-/// How long a part would be in girths if it were a round rod of its area and volume; 0.7 for a ball.
+/// How long a part would be in girths if it were a round rod of its area and volume; 0.7 for a
+/// ball.
 pub fn n_girths(mesh: &TriangleMesh) -> f64 {
     let [area, volume] = [total_area(mesh), volume(mesh)];
     area.powi(3) / (4.0 * PI * volume).powi(2)
@@ -208,8 +210,8 @@ pub fn rod(
     })
 }
 
-/// A section half way along the rod which all lines along it cross once, anticlockwise seen from the
-/// far end; none where there are no lines.
+/// A section half way along the rod which all lines along it cross once, anticlockwise seen from
+/// the far end; none where there are no lines.
 fn crossed(levels: &Levels<'_>, profile: &Profile, lines: &Lines) -> Option<Section> {
     let n = lines.n_along();
     let shares = [0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8];

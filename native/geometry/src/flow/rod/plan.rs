@@ -8,7 +8,8 @@ use super::section::{Profile, Section};
 use crate::elementary::ln;
 
 /// What rings of few quads cost that are to look round, times their number squared; 1 is what quads
-/// 2.7 times as long as wide cost. Below, wires become square; above, their rings are too far apart.
+/// 2.7 times as long as wide cost. Below, wires become square; above, their rings are too far
+/// apart.
 const ROUNDNESS: f64 = 32.0;
 /// What ends that are no rectangles of squares between lines cost.
 const AWRY: f64 = 0.7;

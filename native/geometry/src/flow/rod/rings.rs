@@ -1,4 +1,5 @@
-//! Rings of a rod: the places of their vertices, from one to the next with as little twist as can be.
+//! Rings of a rod: the places of their vertices, from one to the next with as little twist as can
+//! be.
 
 use glam::{DQuat, DVec3};
 
