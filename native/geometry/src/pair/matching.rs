@@ -185,7 +185,7 @@ impl<'a> Search<'a> {
 }
 
 /// Turns over alternating cycles that gain weight until none of up to [`MOST_NEW`] pairs is left.
-fn improve(arcs: &Arcs, mate: &mut [u32], progress: &Progress) -> Result<(), Cancelled> {
+pub(super) fn improve(arcs: &Arcs, mate: &mut [u32], progress: &Progress) -> Result<(), Cancelled> {
     loop {
         let mut is_done = true;
         for a in 0..mate.len() as u32 {
@@ -326,7 +326,14 @@ mod tests {
     fn blossoms_do_not_hide_a_way_and_a_graph_with_bridges_is_refused() {
         // Two triangles joined by an edge; every node has a third arc to a neighbour it has.
         let flat = |list: [[u32; 3]; 6]| list.map(|to| to.map(|b| (b, 1.0)));
-        let joined = flat([[1, 2, 2], [0, 2, 2], [0, 1, 3], [4, 5, 2], [3, 5, 5], [3, 4, 4]]);
+        let joined = flat([
+            [1, 2, 2],
+            [0, 2, 2],
+            [0, 1, 3],
+            [4, 5, 2],
+            [3, 5, 5],
+            [3, 4, 4],
+        ]);
         let mut search = Search::new(&joined, vec![NONE, 2, 1, 4, 3, NONE]);
         assert!(search.augment(0));
         assert!(search.mate.iter().all(|&m| m != NONE));

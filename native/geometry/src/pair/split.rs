@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::{Quads, quads_on};
+use super::{Paired, quads_on};
 use crate::mesh::VertexId;
 
 /// Cuts every quad in four at the middles of its edges and of its inner diagonal.
@@ -10,7 +10,8 @@ use crate::mesh::VertexId;
 /// Each of the four lies in the two triangles of its quad, cut again by the diagonal or one beside
 /// it: where these were positive on the sphere, so are all. Vertices keep their numbers; the middles
 /// of edges follow, then those of quads.
-pub fn split(quads: &Quads) -> Quads {
+pub fn split(paired: &Paired) -> Paired {
+    let quads = &paired.quads;
     let mut points = quads.positions().to_vec();
     let mut middles: HashMap<[VertexId; 2], u32> = HashMap::new();
     let mut around = Vec::with_capacity(quads.n_faces());
@@ -31,5 +32,12 @@ pub fn split(quads: &Quads) -> Quads {
         points.push((ends[0] + ends[1]).normalize_or(ends[0]));
         four.extend((0..4).map(|i| [face[i].0, edges[i], middle, edges[(i + 3) % 4]]));
     }
-    quads_on(points, &four)
+    let mut kept: Vec<_> = (paired.kept.iter())
+        .flat_map(|edge| edge.map(|end| [end, VertexId(middles[edge])]))
+        .collect();
+    kept.sort_unstable();
+    Paired {
+        quads: quads_on(points, &four),
+        kept,
+    }
 }

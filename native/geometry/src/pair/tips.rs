@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Quads, quads_on};
+use crate::mesh::{Id, VertexId};
 use crate::sphere_map::is_positive;
 
 /// Fewer quads than this are left as they are: six cover a sphere like a cube.
@@ -10,11 +10,11 @@ const FEWEST: usize = 6;
 /// No quad.
 const GONE: [u32; 4] = [u32::MAX; 4];
 
-/// Joins the two quads of every vertex that has no others, as long as nothing folds on the sphere;
-/// vertices that are left keep their order.
-pub(super) fn without(mut quads: Vec<[u32; 4]>, sphere: &[DVec3]) -> Quads {
+/// Joins the two quads of every vertex that has no others, as long as nothing folds on the sphere.
+/// Returns the vertices that are left, in their order, by which corners are numbered now.
+pub(super) fn without(quads: &mut Vec<[u32; 4]>, sphere: &[DVec3]) -> Vec<VertexId> {
     let mut rings: Vec<Vec<u32>> = vec![Vec::new(); sphere.len()];
-    for (i, quad) in (0..).zip(&quads) {
+    for (i, quad) in (0..).zip(&*quads) {
         for &v in quad {
             rings[v as usize].push(i);
         }
@@ -25,7 +25,8 @@ pub(super) fn without(mut quads: Vec<[u32; 4]>, sphere: &[DVec3]) -> Quads {
         let &[first, second] = &rings[v as usize][..] else {
             continue;
         };
-        let Some(joined) = joined([quads[first as usize], quads[second as usize]], v, sphere) else {
+        let Some(joined) = joined([quads[first as usize], quads[second as usize]], v, sphere)
+        else {
             continue;
         };
         if n_left <= FEWEST {
@@ -46,7 +47,7 @@ pub(super) fn without(mut quads: Vec<[u32; 4]>, sphere: &[DVec3]) -> Quads {
         quads[second as usize] = GONE;
     }
     quads.retain(|quad| *quad != GONE);
-    compact(&mut quads, &rings, sphere)
+    compact(quads, &rings)
 }
 
 /// The quad around a vertex with two quads, from one end of an inner diagonal.
@@ -69,17 +70,19 @@ fn joined([one, other]: [[u32; 4]; 2], v: u32, sphere: &[DVec3]) -> Option<[u32;
 }
 
 /// Leaves out vertices without a quad.
-fn compact(quads: &mut [[u32; 4]], rings: &[Vec<u32>], sphere: &[DVec3]) -> Quads {
-    let mut number = vec![0; sphere.len()];
-    let mut points = Vec::with_capacity(sphere.len());
-    for (v, ring) in rings.iter().enumerate() {
-        if !ring.is_empty() {
-            number[v] = points.len() as u32;
-            points.push(sphere[v]);
-        }
+fn compact(quads: &mut [[u32; 4]], rings: &[Vec<u32>]) -> Vec<VertexId> {
+    let mut number = vec![0; rings.len()];
+    let mut left = Vec::with_capacity(rings.len());
+    for (v, _) in rings
+        .iter()
+        .enumerate()
+        .filter(|(_, ring)| !ring.is_empty())
+    {
+        number[v] = left.len() as u32;
+        left.push(VertexId::from_index(v));
     }
     for corner in quads.iter_mut().flatten() {
         *corner = number[*corner as usize];
     }
-    quads_on(points, quads)
+    left
 }

@@ -18,6 +18,8 @@ const FACE: f64 = 0.06;
 const MOST_FACES: usize = 9;
 /// What an end with three faces costs: two quads would be left there.
 const TIP: f64 = 2.0;
+/// By how much a pair is made dearer that leaves two quads at a vertex.
+const EASING: f64 = 0.7;
 
 /// For every triangle its neighbours, and what the pair is worth.
 pub(super) fn arcs(mesh: &TriangleMesh, kept: &HalfedgeMap<bool>) -> Vec<[(u32, f64); 3]> {
@@ -44,6 +46,29 @@ pub(super) fn arcs(mesh: &TriangleMesh, kept: &HalfedgeMap<bool>) -> Vec<[(u32, 
         [first, first.next(), first.prev()].map(arc)
     });
     all.collect()
+}
+
+/// Makes the pairs dearer that leave two quads or fewer at a vertex; false if there are none.
+pub(super) fn ease(mesh: &TriangleMesh, arcs: &mut [[(u32, f64); 3]], mate: &[u32]) -> bool {
+    let is_paired = |h: &HalfedgeId| {
+        let twin = mesh.twin(*h).expect("a sphere map has no border");
+        mate[h.face().index()] == twin.face().0
+    };
+    let mut found = false;
+    for v in mesh.vertex_ids() {
+        let paired: Vec<HalfedgeId> = mesh.outgoing(v).filter(is_paired).collect();
+        if mesh.valence(v) - paired.len() > 2 {
+            continue;
+        }
+        found = true;
+        for h in paired {
+            let twin = mesh.twin(h).expect("a sphere map has no border");
+            for side in [h, twin] {
+                arcs[side.face().index()][side.corner()].1 -= EASING;
+            }
+        }
+    }
+    found
 }
 
 /// The quads of partners; the first corner and the third are the ends of the edge between them.

@@ -5,7 +5,7 @@ use thiserror::Error;
 use super::settings::{Kind, MAX_FACES, MIN_FACES, Primitive};
 use crate::mesh::VertexId;
 use crate::progress::Cancelled;
-use crate::{clean, decimate, deform, embed, flow, sphere};
+use crate::{clean, decimate, deform, embed, flow, pair, sphere};
 
 /// Why a run ends without a mesh; nothing was changed.
 #[derive(Debug, Error)]
@@ -116,6 +116,9 @@ pub enum Error {
     /// They could not be laid on the sphere.
     #[error(transparent)]
     Cover(embed::CoverError),
+    /// The triangles could not be paired.
+    #[error(transparent)]
+    Pair(pair::Error),
     /// The primitive could not be laid on the surface.
     #[error(transparent)]
     Deform(deform::Error),
@@ -152,6 +155,7 @@ lift!(
     embed::Error => Embed,
     embed::CoverError => Cover,
     flow::Error => Flow,
+    pair::Error => Pair,
     sphere::AdaptiveError => Sphere,
     deform::Error => Deform
 );

@@ -3,11 +3,12 @@
 use glam::DVec3;
 
 use super::Settings;
-use super::attempt::Attempt;
+use super::attempt::{Attempt, Budget};
 use super::clock::Clock;
 use super::crosses;
 use super::even::{For, Marked, even};
 use super::flowed::{Flowed, FlowedPart, better};
+use super::paired::told;
 use super::probe::Halves;
 use super::{density, mirror};
 use crate::deform::{self, Flowing, Target};
@@ -69,6 +70,13 @@ struct Ground<'a> {
     style: flow::Settings,
 }
 
+/// Why an attempt gave no quads.
+struct Refusal {
+    reason: String,
+    /// Whether it had too many.
+    is_over: bool,
+}
+
 /// Makes flowing quads of a part; the text of an error is the reason to use something else.
 ///
 /// Other settings are tried while quads are inverted or a part of the surface is missed; the first
@@ -110,17 +118,20 @@ pub fn flow_part(
         asked,
         style,
     };
-    match asked.axis {
-        Some(axis) => symmetric(ground, axis, clock, &progress.part("", 0.15, 1.0)),
-        None => ground.best(clock, &progress.part("", 0.15, 1.0)),
-    }
+    let mut budget = Budget::new(n_quads);
+    let part = progress.part("", 0.15, 1.0);
+    let found = match asked.axis {
+        Some(axis) => symmetric((ground, axis), &mut budget, clock, &part),
+        None => ground.best(&mut budget, clock, &part),
+    }?;
+    Ok(found.map(|found| found.found_in(budget.n_attempts)))
 }
 
 /// Quads that are their own image, or the usual ones where these cannot be or miss less of the
 /// surface.
 fn symmetric(
-    mut ground: Ground<'_>,
-    axis: usize,
+    (mut ground, axis): (Ground<'_>, usize),
+    budget: &mut Budget,
     clock: &mut Clock,
     progress: &Progress<'_>,
 ) -> Result<Result<FlowedPart, String>, Cancelled> {
@@ -132,7 +143,7 @@ fn symmetric(
     let reason = match found.flatten() {
         Ok((even, doubled)) => {
             let usual = ground.doubled(even, doubled);
-            let best = ground.best(clock, &progress.part("", 0.05, 0.6))?;
+            let best = ground.best(budget, clock, &progress.part("", 0.05, 0.6))?;
             (ground.even, ground.lines, ground.marked) = usual;
             ground.doubled = None;
             match best {
@@ -146,7 +157,7 @@ fn symmetric(
         }
         Err(reason) => reason,
     };
-    let usual = ground.best(clock, &progress.part("", 0.6, 1.0))?;
+    let usual = ground.best(budget, clock, &progress.part("", 0.6, 1.0))?;
     let usual = usual.map(|usual| FlowedPart {
         mirrored: Some(Err(reason)),
         ..usual
@@ -174,10 +185,11 @@ impl Ground<'_> {
         )
     }
 
-    /// The first of the attempts in which nothing fails, or the one in which least does; one more is
-    /// worth the marks that it may meet.
+    /// The first of the attempts in which nothing fails, or the one in which least does of those that
+    /// the budget has room for; one more is worth the marks that it may meet.
     fn best(
         &self,
+        budget: &mut Budget,
         clock: &mut Clock,
         progress: &Progress<'_>,
     ) -> Result<Result<FlowedPart, String>, Cancelled> {
@@ -190,8 +202,23 @@ impl Ground<'_> {
             if attempt.is_last_resort() && (is_flowing || self.doubled.is_some()) {
                 break;
             }
+            // Without too many quads there is nothing to take out.
+            if attempt == Attempt::Thinned && !budget.is_over {
+                continue;
+            }
+            let is_spare = attempt == Attempt::Usual || attempt.is_last_resort();
+            let kept_back = if is_spare {
+                0
+            } else {
+                self.kept_back(&best, budget)
+            };
+            if !budget.take(attempt, kept_back) {
+                continue;
+            }
             let to = from + 0.6 * (1.0 - from);
             let found = self.attempt(attempt, clock, &progress.part("", from, to))?;
+            budget.is_over |= matches!(found, Err(Refusal { is_over: true, .. }));
+            let found = found.map_err(|refusal| refusal.reason);
             let found = found.and_then(FlowedPart::not_cut_off);
             from = to;
             best = better(best, found);
@@ -205,21 +232,33 @@ impl Ground<'_> {
         Ok(best)
     }
 
+    /// What of the budget is kept back for what comes when no more settings are tried here.
+    fn kept_back(&self, best: &Result<FlowedPart, String>, budget: &Budget) -> usize {
+        match best {
+            Ok(best) => usize::from(self.doubled.is_some() && best.n_missed > 0),
+            Err(_) => budget.kept_back(self.doubled.is_some()),
+        }
+    }
+
     /// Quads that flow by some settings, laid on the target.
     fn attempt(
         &self,
         attempt: Attempt,
         clock: &mut Clock,
         progress: &Progress<'_>,
-    ) -> Result<Result<FlowedPart, String>, Cancelled> {
+    ) -> Result<Result<FlowedPart, Refusal>, Cancelled> {
         let part = progress.part("flow", 0.0, 0.75);
         let mut settings = attempt.settings(&self.style);
         let weights = |values| density::weights(values, self.target, self.even.mesh());
         settings.sizes.weights = self.asked.density.map(weights);
-        let found = clock.step("flow", || told(self.find(&settings, &part)))?;
-        let (found, covered) = match found {
+        let found = clock.step("flow", || self.find(&settings, &part));
+        let is_over = matches!(
+            found,
+            Err(pipeline::Error::Flow(flow::Error::Count { n_quads, n_wanted })) if n_quads > n_wanted
+        );
+        let (found, covered) = match told(found)? {
             Ok(found) => found,
-            Err(reason) => return Ok(Err(reason)),
+            Err(reason) => return Ok(Err(Refusal { reason, is_over })),
         };
         let part = progress.part("deform", 0.75, 1.0);
         let quads = found.mesh.with_positions(covered.sphere);
@@ -245,7 +284,7 @@ impl Ground<'_> {
         };
         let deformed = match deformed.map(evened) {
             Ok(deformed) => deformed,
-            Err(reason) => return Ok(Err(reason)),
+            Err(reason) => return Ok(Err(Refusal { reason, is_over })),
         };
         let marks = (&deformed.mesh, &deformed.features[..]);
         Ok(Ok(FlowedPart {
@@ -257,6 +296,7 @@ impl Ground<'_> {
             crosses: crosses::some(self.even.mesh(), &found, self.asked.n_crosses()),
             flowed: Flowed::Used {
                 attempt,
+                n_attempts: 1,
                 flow: found.report,
                 cover: covered.report,
             },
@@ -307,14 +347,5 @@ impl Ground<'_> {
         };
         let n_astray = halves.pieces().filter(is_astray).count().div_ceil(2);
         (n_far * mesh.n_faces()).div_ceil(gaps.len()) + n_astray
-    }
-}
-
-/// Splits a cancellation, which ends the run, from the reasons to use something else.
-fn told<T>(result: Result<T, pipeline::Error>) -> Result<Result<T, String>, Cancelled> {
-    match result {
-        Ok(value) => Ok(Ok(value)),
-        Err(pipeline::Error::Cancelled(cancelled)) => Err(cancelled),
-        Err(error) => Ok(Err(error.to_string())),
     }
 }
