@@ -28,13 +28,16 @@ const NEAR: f64 = 0.5;
 /// And beyond that what is nearer by this factor is worth less regular ones.
 const WORTH: f64 = 2.0;
 
+/// Of fewer quads the quad sphere's are as good, and their count is nearer.
+const FEWEST: usize = 24;
+
 /// What is used where quads do not flow.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Instead {
     /// Triangles of the part in pairs.
     PairedTriangles,
-    /// The quad sphere, where that has fewer inverted quads.
+    /// The quad sphere, where that has fewer inverted quads or few are wanted.
     QuadSphere,
 }
 
@@ -92,6 +95,10 @@ pub fn paired(
     clock: &mut Clock,
     progress: &Progress<'_>,
 ) -> Result<Result<Laid, String>, Cancelled> {
+    if wanted.n_faces < FEWEST {
+        let reason = format!("{} quads are too few to be pairs", wanted.n_faces);
+        return Ok(Err(reason));
+    }
     let part = progress.part("", 0.0, 0.5);
     let quarters = told(quarters(wanted, (map, target), clock, &part))?;
     if quarters.as_ref().is_ok_and(Laid::is_good) {
