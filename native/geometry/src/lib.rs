@@ -50,6 +50,7 @@ pub mod measure;
 pub mod mesh;
 pub mod mirror;
 pub mod nearest;
+pub mod pair;
 pub mod pipeline;
 pub mod progress;
 pub mod random;

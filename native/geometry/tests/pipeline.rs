@@ -307,7 +307,7 @@ fn too_few_quads_to_flow_fall_back_to_the_quad_sphere_and_say_so() {
     let result = run(&mesh, &wanted).unwrap();
     assert_eq!(check_cover(&result.mesh, &result.sphere), Ok(()));
     match &result.report.parts[0].flow {
-        Some(Flowed::Refused { reason }) => assert!(!reason.is_empty()),
+        Some(Flowed::Refused { reason, .. }) => assert!(!reason.is_empty()),
         other => assert!(matches!(other, Some(Flowed::Used { .. })), "{other:?}"),
     }
 }

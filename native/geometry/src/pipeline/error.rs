@@ -8,7 +8,7 @@ use super::settings::{Kind, MAX_FACES, MIN_FACES, Primitive};
 use super::warning::{Warning, grave};
 use crate::mesh::VertexId;
 use crate::progress::Cancelled;
-use crate::{clean, decimate, deform, embed, flow, sphere};
+use crate::{clean, decimate, deform, embed, flow, pair, sphere};
 
 /// Why a run ends without a mesh; nothing was changed.
 #[derive(Debug, Error)]
@@ -127,6 +127,9 @@ pub enum Error {
     /// They could not be laid on the sphere.
     #[error(transparent)]
     Cover(embed::CoverError),
+    /// The triangles could not be paired.
+    #[error(transparent)]
+    Pair(pair::Error),
     /// The primitive could not be laid on the surface.
     #[error(transparent)]
     Deform(deform::Error),
@@ -163,6 +166,7 @@ lift!(
     embed::Error => Embed,
     embed::CoverError => Cover,
     flow::Error => Flow,
+    pair::Error => Pair,
     sphere::AdaptiveError => Sphere,
     deform::Error => Deform
 );

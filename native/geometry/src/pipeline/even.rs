@@ -191,7 +191,7 @@ fn density(
 }
 
 /// Edges as halfedges on both sides of each.
-fn either_side(mesh: &TriangleMesh, edges: &[[VertexId; 2]]) -> HalfedgeMap<bool> {
+pub(super) fn either_side(mesh: &TriangleMesh, edges: &[[VertexId; 2]]) -> HalfedgeMap<bool> {
     let is_marked = |h| {
         let [a, b] = [mesh.origin(h), mesh.target(h)];
         edges.binary_search(&[a.min(b), a.max(b)]).is_ok()
@@ -199,7 +199,7 @@ fn either_side(mesh: &TriangleMesh, edges: &[[VertexId; 2]]) -> HalfedgeMap<bool
     mesh.halfedge_ids().map(is_marked).collect()
 }
 
-fn triangles(mesh: &PolygonMesh) -> TriangleMesh {
+pub(super) fn triangles(mesh: &PolygonMesh) -> TriangleMesh {
     let corners = |face: &[VertexId]| [face[0], face[1], face[2]];
     TriangleMesh::new(
         mesh.positions().to_vec(),

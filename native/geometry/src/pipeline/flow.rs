@@ -1,13 +1,13 @@
 //! Quads that flow: an even surface, its flow, a cover of the sphere, the fit.
 
 use super::Settings;
-use super::attempt::Attempt;
+use super::attempt::{Attempt, Budget};
 use super::clock::Clock;
 use super::crosses;
-use super::even::{self, For, Marked, even};
+use super::even::{For, Marked, even};
 use super::flowed::{Flowed, FlowedPart, better};
+use super::paired::told;
 use super::probe::n_missed;
-use super::sheets::Thick;
 use super::{density, mirror, rods};
 use crate::deform::{self, Flowing, Target};
 use crate::embed::{self, Covered};
@@ -64,70 +64,22 @@ struct Ground<'a> {
     style: flow::Settings,
 }
 
-/// Makes flowing quads of a part; the text of an error is the reason to use something else.
+/// Why an attempt gave no quads.
+struct Refusal {
+    reason: String,
+    /// Whether it had too many.
+    is_over: bool,
+}
+
+/// Quads off the flat metric of an even surface, along all lines of a solid, or, where none are
+/// given, along what is long and clear.
 ///
-/// Other settings are tried while quads are inverted or a part of the surface is missed; the first
-/// of those with the fewest is it.
-pub fn flow_part(
-    map: &SphereMap,
-    target: &Target,
-    asked: Asked<'_>,
-    clock: &mut Clock,
-    progress: &Progress<'_>,
-) -> Result<Result<FlowedPart, String>, Cancelled> {
-    let part = progress.part("sphere", 0.0, 0.05);
-    let thick = clock.step("sphere", || Thick::new(map, target, asked, &part))?;
-    if let Some(thick) = thick {
-        let (map, made_on) = (&thick.map, &thick.target);
-        let part = progress.part("", 0.05, 0.6);
-        if let Ok(found) = flowing(map, made_on, asked, clock, &part)? {
-            let onto = (target, asked);
-            let found = told(thick.thinned(found, onto, progress))?;
-            if found.as_ref().is_ok_and(FlowedPart::is_sound) {
-                return Ok(found);
-            }
-        }
-    } else if rods::are_clear(target) {
-        let wanted = Marked::new(target.mesh(), asked.marked);
-        let found = rods::rings(map, (target, &wanted), asked, (clock, &part))?;
-        if found.as_ref().is_ok_and(FlowedPart::is_sound) {
-            return Ok(found);
-        }
-    }
-    flowing(map, target, asked, clock, progress)
-}
-
-/// Quads off the flat metric of an even surface.
-fn flowing(
-    map: &SphereMap,
-    target: &Target,
-    asked: Asked<'_>,
-    clock: &mut Clock,
-    progress: &Progress<'_>,
-) -> Result<Result<FlowedPart, String>, Cancelled> {
-    let style = asked.settings.flow(asked.n_quads);
-    let lines = even::solid(map.mesh(), style.sharp_angle);
-    let lines = lines.filter(|_| Marked::new(target.mesh(), asked.marked).is_empty());
-    let mut from = 0.0;
-    if let Some(lines) = lines {
-        from = 0.5;
-        let part = progress.part("", 0.0, from);
-        let found = along(map, target, (asked, &lines), clock, &part)?;
-        if let Ok(found) = found
-            && found.n_failed() == 0
-        {
-            return Ok(Ok(found));
-        }
-    }
-    let part = progress.part("", from, 1.0);
-    along(map, target, (asked, &[]), clock, &part)
-}
-
-/// The same along all lines of a solid, or, where none are given, along what is long and clear.
-fn along(
-    map: &SphereMap,
-    target: &Target,
+/// Other settings are tried while quads are inverted or a part of the surface is missed and the
+/// budget has room; the first of those with the fewest is it.
+pub fn along(
+    (map, target): (&SphereMap, &Target),
     (asked, lines): (Asked<'_>, &[FeatureLine]),
+    budget: &mut Budget,
     clock: &mut Clock,
     progress: &Progress<'_>,
 ) -> Result<Result<FlowedPart, String>, Cancelled> {
@@ -165,17 +117,19 @@ fn along(
         asked,
         style,
     };
-    match asked.axis {
-        Some(axis) => symmetric(ground, axis, clock, &progress.part("", 0.15, 1.0)),
-        None => ground.best(clock, &progress.part("", 0.15, 1.0)),
-    }
+    let part = progress.part("", 0.15, 1.0);
+    let found = match asked.axis {
+        Some(axis) => symmetric((ground, axis), budget, clock, &part),
+        None => ground.best(budget, clock, &part),
+    }?;
+    Ok(found.map(|found| found.found_in(budget.n_attempts)))
 }
 
 /// Quads that are their own image, or the usual ones where these cannot be or miss less of the
 /// surface.
 fn symmetric(
-    mut ground: Ground<'_>,
-    axis: usize,
+    (mut ground, axis): (Ground<'_>, usize),
+    budget: &mut Budget,
     clock: &mut Clock,
     progress: &Progress<'_>,
 ) -> Result<Result<FlowedPart, String>, Cancelled> {
@@ -187,7 +141,7 @@ fn symmetric(
     let reason = match found.flatten() {
         Ok((even, doubled)) => {
             let usual = ground.doubled(even, doubled);
-            let best = ground.best(clock, &progress.part("", 0.05, 0.6))?;
+            let best = ground.best(budget, clock, &progress.part("", 0.05, 0.6))?;
             (ground.even, ground.lines, ground.marked) = usual;
             ground.doubled = None;
             match best {
@@ -201,7 +155,7 @@ fn symmetric(
         }
         Err(reason) => reason,
     };
-    let usual = ground.best(clock, &progress.part("", 0.6, 1.0))?;
+    let usual = ground.best(budget, clock, &progress.part("", 0.6, 1.0))?;
     let usual = usual.map(|usual| FlowedPart {
         mirrored: Some(Err(reason)),
         ..usual
@@ -229,10 +183,11 @@ impl Ground<'_> {
         )
     }
 
-    /// The first of the attempts in which nothing fails, or the one in which least does; one more is
-    /// worth the marks that it may meet.
+    /// The first of the attempts in which nothing fails, or the one in which least does of those that
+    /// the budget has room for; one more is worth the marks that it may meet.
     fn best(
         &self,
+        budget: &mut Budget,
         clock: &mut Clock,
         progress: &Progress<'_>,
     ) -> Result<Result<FlowedPart, String>, Cancelled> {
@@ -247,8 +202,23 @@ impl Ground<'_> {
             if attempt.is_last_resort() && (is_flowing || self.doubled.is_some()) {
                 break;
             }
+            // Without too many quads there is nothing to take out.
+            if attempt == Attempt::Thinned && !budget.is_over {
+                continue;
+            }
+            let is_spare = attempt == Attempt::Usual || attempt.is_last_resort();
+            let kept_back = if is_spare {
+                0
+            } else {
+                self.kept_back(&best, budget)
+            };
+            if !budget.take(attempt, kept_back) {
+                continue;
+            }
             let to = from + 0.6 * (1.0 - from);
             let found = self.attempt(attempt, clock, &progress.part("", from, to))?;
+            budget.is_over |= matches!(found, Err(Refusal { is_over: true, .. }));
+            let found = found.map_err(|refusal| refusal.reason);
             let found = found.and_then(FlowedPart::not_cut_off);
             from = to;
             best = better(best, found);
@@ -276,21 +246,33 @@ impl Ground<'_> {
         rods::rings(&self.even, ground, self.asked, (clock, progress))
     }
 
+    /// What of the budget is kept back for what comes when no more settings are tried here.
+    fn kept_back(&self, best: &Result<FlowedPart, String>, budget: &Budget) -> usize {
+        match best {
+            Ok(best) => usize::from(self.doubled.is_some() && best.n_missed > 0),
+            Err(_) => budget.kept_back(self.doubled.is_some()),
+        }
+    }
+
     /// Quads that flow by some settings, laid on the target.
     fn attempt(
         &self,
         attempt: Attempt,
         clock: &mut Clock,
         progress: &Progress<'_>,
-    ) -> Result<Result<FlowedPart, String>, Cancelled> {
+    ) -> Result<Result<FlowedPart, Refusal>, Cancelled> {
         let part = progress.part("flow", 0.0, 0.75);
         let mut settings = attempt.settings(&self.style);
         let weights = |values| density::weights(values, self.target, self.even.mesh());
         settings.sizes.weights = self.asked.density.map(weights);
-        let found = clock.step("flow", || told(self.find(&settings, &part)))?;
-        let (found, covered) = match found {
+        let found = clock.step("flow", || self.find(&settings, &part));
+        let is_over = matches!(
+            found,
+            Err(pipeline::Error::Flow(flow::Error::Count { n_quads, n_wanted })) if n_quads > n_wanted
+        );
+        let (found, covered) = match told(found)? {
             Ok(found) => found,
-            Err(reason) => return Ok(Err(reason)),
+            Err(reason) => return Ok(Err(Refusal { reason, is_over })),
         };
         let part = progress.part("deform", 0.75, 1.0);
         let quads = found.mesh.with_positions(covered.sphere);
@@ -317,7 +299,7 @@ impl Ground<'_> {
         };
         let deformed = match deformed.map(evened) {
             Ok(deformed) => deformed,
-            Err(reason) => return Ok(Err(reason)),
+            Err(reason) => return Ok(Err(Refusal { reason, is_over })),
         };
         let marks = (&deformed.mesh, &deformed.features[..]);
         Ok(Ok(FlowedPart {
@@ -329,6 +311,7 @@ impl Ground<'_> {
             crosses: crosses::some(self.even.mesh(), &found, self.asked.n_crosses()),
             flowed: Flowed::Used {
                 attempt,
+                n_attempts: 1,
                 flow: found.report,
                 cover: covered.report,
             },
@@ -367,14 +350,5 @@ impl Ground<'_> {
         };
         let covered = embed::cover(&found.mesh, &found.sphere, &progress.part("", 0.95, 1.0))?;
         Ok((found, covered))
-    }
-}
-
-/// Splits a cancellation, which ends the run, from the reasons to use something else.
-fn told<T>(result: Result<T, pipeline::Error>) -> Result<Result<T, String>, Cancelled> {
-    match result {
-        Ok(value) => Ok(Ok(value)),
-        Err(pipeline::Error::Cancelled(cancelled)) => Err(cancelled),
-        Err(error) => Ok(Err(error.to_string())),
     }
 }

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::attempt::Attempt;
 use super::crosses::Cross;
+use super::paired::Instead;
 use crate::deform::Deformed;
 use crate::{embed, flow, sphere};
 
@@ -25,15 +26,19 @@ pub enum Flowed {
     Used {
         /// With which settings.
         attempt: Attempt,
+        /// How many settings were tried, those of a symmetric surface too.
+        n_attempts: usize,
         /// How they were found.
         flow: flow::Report,
         /// What had to be repaired to lay them on the sphere.
         cover: embed::CoverReport,
     },
-    /// They do not; the quad sphere was used instead.
+    /// They do not.
     Refused {
         /// Why not.
         reason: String,
+        /// What was used instead.
+        instead: Instead,
     },
 }
 
@@ -76,6 +81,15 @@ impl FlowedPart {
     /// Whether nothing fails and marked edges are met.
     pub fn is_sound(&self) -> bool {
         self.n_failed() == 0 && self.lost <= WORTH
+    }
+
+    /// The same with how many settings were tried.
+    #[must_use]
+    pub fn found_in(mut self, n: usize) -> Self {
+        if let Flowed::Used { n_attempts, .. } = &mut self.flowed {
+            *n_attempts = n;
+        }
+        self
     }
 
     pub fn is_last_resort(&self) -> bool {

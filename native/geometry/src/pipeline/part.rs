@@ -4,16 +4,17 @@ use std::borrow::Cow;
 
 use glam::DVec3;
 
-use super::Error;
 use super::clock::Clock;
 use super::crosses::Cross;
 use super::density::Density;
-use super::flow::{Asked, flow_part};
-use super::flowed::Flowed;
+use super::flow::Asked;
+use super::flowed::{Flowed, FlowedPart};
 use super::marks::Marks;
 use super::mirror::{self, Faced, Plane, Role, face};
+use super::paired::{Instead, Laid, paired};
 use super::report::{Mirrored, PartReport, Reduced};
 use super::settings::{Kind, Primitive, Settings};
+use super::{Error, ways};
 use crate::embed::{Embedded, OffsetPredictor};
 use crate::hierarchy::CollapseHierarchy;
 use crate::mesh::{HalfedgeMap, PolygonMesh, TriangleMesh, VertexId, VertexMap};
@@ -134,47 +135,81 @@ impl Wanted<'_> {
         clock: &mut Clock,
         progress: &Progress<'_>,
     ) -> Result<Made, Error> {
-        let mut flow = None;
-        let (mut from, primitive) = (0.0, self.settings.primitive());
-        if primitive == Primitive::Flow {
-            let wanted = Asked {
-                n_quads: self.n_faces,
-                settings: self.settings,
-                density,
-                marked,
-                axis,
-            };
-            match flow_part(&map, target, wanted, clock, &progress.part("", 0.0, 0.9))? {
-                Ok(part) => {
-                    return Ok(Made {
-                        deformed: part.deformed,
-                        flow: Some(part.flowed),
-                        mirrored: part.mirrored.map(told),
-                        sphere: Some(part.sphere),
-                        crosses: part.crosses,
-                    });
-                }
-                Err(reason) => flow = Some(Flowed::Refused { reason }),
-            }
-            from = 0.9;
+        let start = (hierarchy, map);
+        if self.settings.primitive() != Primitive::Flow {
+            let laid = self.fixed(start, target, clock, progress)?;
+            return Ok(self.made((laid, None), axis));
         }
-        let stage = progress.part("sphere", from, f64::midpoint(from, 1.0));
-        let placed = clock.step("sphere", || self.place(hierarchy, map, &stage))?;
-        let stage = progress.part("deform", f64::midpoint(from, 1.0), 1.0);
-        let settings = deform::Settings::default();
-        let (map, primitive) = (&placed.map, &placed.primitive);
-        let deformed = clock.step("deform", || {
-            deform::deform(map, primitive, target, &settings, &stage)
-        })?;
-        let only_flow = || Err("only quads that flow can be".to_owned());
-        Ok(Made {
-            deformed,
+        let wanted = Asked {
+            n_quads: self.n_faces,
+            settings: self.settings,
+            density,
+            marked,
+            axis,
+        };
+        let part = progress.part("", 0.0, 0.9);
+        match ways::flow_part(&start.1, target, wanted, clock, &part)? {
+            Ok(part) => Ok(Made::flowing(part)),
+            Err(reason) => {
+                let part = progress.part("", 0.9, 1.0);
+                let (laid, instead) = self.last_resort(start, target, clock, &part)?;
+                Ok(self.made((laid, Some(Flowed::Refused { reason, instead })), axis))
+            }
+        }
+    }
+
+    /// Faces that do not flow.
+    fn made(&self, (laid, flow): (Laid, Option<Flowed>), axis: Option<usize>) -> Made {
+        let is_asked = axis.is_some() || self.settings.mirrors_in_vain();
+        Made {
+            deformed: laid.deformed,
             flow,
-            mirrored: (axis.is_some() || self.settings.mirrors_in_vain())
-                .then(|| told(only_flow())),
-            sphere: placed.report,
+            mirrored: is_asked.then(|| told(Err("only quads that flow can be".to_owned()))),
+            sphere: laid.sphere,
             crosses: Vec::new(),
-        })
+        }
+    }
+
+    /// Quads where none flow: pairs of triangles, or the quad sphere where it has fewer inverted ones.
+    fn last_resort(
+        &self,
+        start: (&CollapseHierarchy, SphereMap),
+        target: &deform::Target,
+        clock: &mut Clock,
+        progress: &Progress<'_>,
+    ) -> Result<(Laid, Instead), Error> {
+        let part = progress.part("", 0.0, 0.6);
+        let pairs = paired(self, (&start.1, target), clock, &part)?;
+        if let Ok(pairs) = pairs {
+            if pairs.n_inverted() == 0 {
+                return Ok((pairs, Instead::PairedTriangles));
+            }
+            return match self.fixed(start, target, clock, &progress.part("", 0.6, 1.0)) {
+                Ok(sphere) => Ok(pairs.or_sphere(sphere)),
+                Err(error) if error.is_cancelled() => Err(error),
+                Err(_) => Ok((pairs, Instead::PairedTriangles)),
+            };
+        }
+        let sphere = self.fixed(start, target, clock, &progress.part("", 0.6, 1.0))?;
+        Ok((sphere, Instead::QuadSphere))
+    }
+
+    /// The faces of a primitive that is the same for all shapes, or adapts to them.
+    fn fixed(
+        &self,
+        (hierarchy, map): (&CollapseHierarchy, SphereMap),
+        target: &deform::Target,
+        clock: &mut Clock,
+        progress: &Progress<'_>,
+    ) -> Result<Laid, Error> {
+        let stage = progress.part("sphere", 0.0, 0.5);
+        let placed = clock.step("sphere", || self.place(hierarchy, map, &stage))?;
+        let stage = progress.part("deform", 0.5, 1.0);
+        let (map, primitive) = (&placed.map, &placed.primitive);
+        let deform =
+            || deform::deform(map, primitive, target, &deform::Settings::default(), &stage);
+        let deformed = clock.step("deform", deform)?;
+        Ok(Laid::new(deformed, placed.report, target))
     }
 
     /// The part with the edges that the result is to have too.
@@ -280,6 +315,18 @@ struct Made {
     mirrored: Option<Mirrored>,
     sphere: Option<sphere::Report>,
     crosses: Vec<Cross>,
+}
+
+impl Made {
+    fn flowing(part: FlowedPart) -> Self {
+        Self {
+            deformed: part.deformed,
+            flow: Some(part.flowed),
+            mirrored: part.mirrored.map(told),
+            sphere: Some(part.sphere),
+            crosses: part.crosses,
+        }
+    }
 }
 
 fn told(mirrored: Result<(), String>) -> Mirrored {

@@ -123,6 +123,7 @@ fn laid(
         sphere: sphere::Report::default(),
         flowed: Flowed::Used {
             attempt: Attempt::Rings,
+            n_attempts: 0,
             flow: report,
             cover: embed::CoverReport::default(),
         },

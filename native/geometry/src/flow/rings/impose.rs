@@ -8,6 +8,9 @@ use crate::flow::rounding::{Rounding, shift};
 /// A period is not turned onto an axis from which it is farther than this share of its length.
 const OBLIQUE: f64 = 0.6;
 
+/// More rings than this that cannot be reached are a metric that has no room for any.
+const MOST_REFUSED: usize = 30;
+
 /// Which rings to impose.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Greed {
@@ -30,7 +33,7 @@ struct Offer {
 pub fn impose(rounding: &mut Rounding, pool: &[Cylinder], scale: f64, greed: Greed) -> usize {
     let mut refused: Vec<Vec<f64>> = Vec::new();
     let mut n_set = 0;
-    while n_set < greed.n_most {
+    while n_set < greed.n_most && refused.len() < MOST_REFUSED {
         let Some(offer) = best_offer(rounding, pool, [scale, greed.worth], &refused) else {
             break;
         };

@@ -20,6 +20,12 @@ const GIVEN_UP: f64 = 0.25;
 /// What a move may lose by count and distance, hoping for loops: hardly any that was kept lost more.
 const HOPE: f64 = 0.02;
 
+/// About how many rings a metric has.
+const N_RINGS: usize = 30;
+/// The products that may be spent on finding moves anew: a metric of 100 periods never gets there, one
+/// of 360 with 200 lines after a second.
+const MOST_WORK: f64 = 3e9;
+
 /// Tries moves that keep the rings there are; keeps what lowers the cost.
 pub(super) fn improve(
     problem: &Problem,
@@ -29,10 +35,17 @@ pub(super) fn improve(
     let mut random = Random::new(problem.settings.seed);
     let n_trials = problem.settings.n_trials;
     let mut place = Place::new(problem, best, &mut random);
+    let n_rows = problem.lines.len() + N_RINGS;
+    let each = n_rows as f64 * (problem.wish.len() as f64).powi(2);
+    let mut work = 0.0;
     for trial in 0..n_trials {
         progress.at(trial as f64 / n_trials as f64)?;
         if let Some(better) = place.try_next(&mut random) {
             place = Place::new(problem, better, &mut random);
+            work += each;
+            if work > MOST_WORK {
+                break;
+            }
         }
     }
     Ok(place.best)

@@ -104,6 +104,11 @@ pub fn quantise(
     settings: &Settings,
     progress: &Progress,
 ) -> Result<Quantised, QuantiseError> {
+    let n_periods = complex.n_vertices().saturating_sub(2);
+    if n_periods > FEW_PERIODS && n_periods * QUADS_PER_PERIOD > n_quads {
+        let n_tried = 0;
+        return Err(QuantiseError::Stuck { n_tried, n_periods });
+    }
     let problem = Problem::new(&mut complex, n_quads, settings)?;
     let found = starts::round_at_scales(&problem, &progress.part("", 0.0, 0.4))?;
     let mut n_trials = found.n_tried - found.n_stuck;
@@ -127,6 +132,11 @@ pub fn quantise(
         },
     })
 }
+
+/// So many periods are always tried.
+const FEW_PERIODS: usize = 200;
+/// And of more one for so many quads: with less room every rounding gets stuck.
+const QUADS_PER_PERIOD: usize = 4;
 
 /// A line is given up if to put it along an axis costs more energy than this.
 const DEAREST: f64 = 0.01;

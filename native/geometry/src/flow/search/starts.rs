@@ -43,6 +43,7 @@ pub(super) fn round_at_scales(problem: &Problem, progress: &Progress) -> Result<
     let n = (WORTHS.len() * N_SCALES) as f64;
     for worth in WORTHS {
         let mut scale = 1.0;
+        let n_reached = found.n_tried - found.n_stuck;
         for i in 0..N_SCALES {
             progress.at(found.n_tried as f64 / n)?;
             let spread = 1.0 + SPREAD * (i as f64 - 2.0);
@@ -50,6 +51,10 @@ pub(super) fn round_at_scales(problem: &Problem, progress: &Progress) -> Result<
                 Some(n_quads) => (problem.n_quads / n_quads).sqrt() * spread,
                 None => ROOM,
             };
+        }
+        if found.n_tried - found.n_stuck == n_reached {
+            // More rings leave less room yet.
+            break;
         }
     }
     if let Some(best) = &mut found.best {

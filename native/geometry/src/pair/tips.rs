@@ -1,0 +1,88 @@
+//! Vertices with two quads alone: both become one.
+
+use glam::DVec3;
+
+use crate::mesh::{Id, VertexId};
+use crate::sphere_map::is_positive;
+
+/// Fewer quads than this are left as they are: six cover a sphere like a cube.
+const FEWEST: usize = 6;
+/// No quad.
+const GONE: [u32; 4] = [u32::MAX; 4];
+
+/// Joins the two quads of every vertex that has no others, as long as nothing folds on the sphere.
+/// Returns the vertices that are left, in their order, by which corners are numbered now.
+pub(super) fn without(quads: &mut Vec<[u32; 4]>, sphere: &[DVec3]) -> Vec<VertexId> {
+    let mut rings: Vec<Vec<u32>> = vec![Vec::new(); sphere.len()];
+    for (i, quad) in (0..).zip(&*quads) {
+        for &v in quad {
+            rings[v as usize].push(i);
+        }
+    }
+    let mut n_left = quads.len();
+    let mut queue: Vec<u32> = (0..sphere.len() as u32).rev().collect();
+    while let Some(v) = queue.pop() {
+        let &[first, second] = &rings[v as usize][..] else {
+            continue;
+        };
+        let Some(joined) = joined([quads[first as usize], quads[second as usize]], v, sphere)
+        else {
+            continue;
+        };
+        if n_left <= FEWEST {
+            break;
+        }
+        n_left -= 1;
+        rings[v as usize].clear();
+        for u in quads[second as usize] {
+            rings[u as usize].retain(|&quad| quad != second);
+        }
+        for u in joined {
+            if !rings[u as usize].contains(&first) {
+                rings[u as usize].push(first);
+            }
+            queue.push(u);
+        }
+        quads[first as usize] = joined;
+        quads[second as usize] = GONE;
+    }
+    quads.retain(|quad| *quad != GONE);
+    compact(quads, &rings)
+}
+
+/// The quad around a vertex with two quads, from one end of an inner diagonal.
+fn joined([one, other]: [[u32; 4]; 2], v: u32, sphere: &[DVec3]) -> Option<[u32; 4]> {
+    let around = |quad: [u32; 4]| {
+        let at = quad.iter().position(|&u| u == v)?;
+        Some([1, 2, 3].map(|step| quad[(at + step) % 4]))
+    };
+    let [a, b, c] = around(one)?;
+    let [d, e, f] = around(other)?;
+    if [a, c] != [f, d] || b == e {
+        return None;
+    }
+    let ways = [[a, b, c, e], [b, c, e, a]];
+    let is_inner = |quad: &[u32; 4]| {
+        let [p, q, r, s] = quad.map(|u| sphere[u as usize]);
+        is_positive(p, q, r) && is_positive(p, r, s)
+    };
+    ways.into_iter().find(is_inner)
+}
+
+/// Leaves out vertices without a quad.
+fn compact(quads: &mut [[u32; 4]], rings: &[Vec<u32>]) -> Vec<VertexId> {
+    let mut number = vec![0; rings.len()];
+    let mut left = Vec::with_capacity(rings.len());
+    for (v, _) in rings
+        .iter()
+        .enumerate()
+        .filter(|(_, ring)| !ring.is_empty())
+    {
+        number[v] = left.len() as u32;
+        left.push(VertexId::from_index(v));
+    }
+    for corner in quads.iter_mut().flatten() {
+        *corner = number[*corner as usize];
+    }
+    left
+}

@@ -1,0 +1,108 @@
+//! What a pair of triangles is worth as a quad.
+
+use std::array;
+
+use glam::DVec3;
+
+use crate::measure::area_vector;
+use crate::mesh::{HalfedgeId, HalfedgeMap, Id, TriangleMesh, VertexId};
+
+/// What it costs when an edge that is to stay becomes a diagonal.
+const KEPT: f64 = 4.0;
+/// What a right angle between the triangles costs.
+const FOLD: f64 = 1.0;
+/// What an end of the diagonal gains by each face it has more than six, and loses by each less:
+/// quads want four at a vertex, triangles six.
+const FACE: f64 = 0.06;
+/// More faces than this at a vertex gain no more.
+const MOST_FACES: usize = 9;
+/// What an end with three faces costs: two quads would be left there.
+const TIP: f64 = 2.0;
+/// By how much a pair is made dearer that leaves two quads at a vertex.
+const EASING: f64 = 0.7;
+
+/// For every triangle its neighbours, and what the pair is worth.
+pub(super) fn arcs(mesh: &TriangleMesh, kept: &HalfedgeMap<bool>) -> Vec<[(u32, f64); 3]> {
+    let valences: Vec<usize> = mesh.vertex_ids().map(|v| mesh.valence(v)).collect();
+    let end = |v: VertexId| {
+        let n = valences[v.index()];
+        let tip = if n <= 3 { TIP } else { 0.0 };
+        FACE * (n.min(MOST_FACES) as f64 - 6.0) - tip
+    };
+    let arc = |h: HalfedgeId| {
+        let twin = mesh.twin(h).expect("a sphere map has no border");
+        // The same for both sides, to the last bit.
+        let first = h.min(twin);
+        let stays = if kept[h] || kept[twin] { KEPT } else { 0.0 };
+        let [a, b] = [mesh.origin(first), mesh.target(first)];
+        let normals = [first.face(), h.max(twin).face()]
+            .map(|f| area_vector(mesh.triangle(f)).normalize_or_zero());
+        let fold = FOLD * (1.0 - normals[0].dot(normals[1]));
+        let shape = squareness(corners(mesh, first).map(|v| mesh.position(v)));
+        (twin.face().0, shape - stays - fold + end(a) + end(b))
+    };
+    let all = mesh.face_ids().map(|face| {
+        let first = mesh.halfedge(face);
+        [first, first.next(), first.prev()].map(arc)
+    });
+    all.collect()
+}
+
+/// Makes the pairs dearer that leave two quads or fewer at a vertex; false if there are none.
+pub(super) fn ease(mesh: &TriangleMesh, arcs: &mut [[(u32, f64); 3]], mate: &[u32]) -> bool {
+    let is_paired = |h: &HalfedgeId| {
+        let twin = mesh.twin(*h).expect("a sphere map has no border");
+        mate[h.face().index()] == twin.face().0
+    };
+    let mut found = false;
+    for v in mesh.vertex_ids() {
+        let paired: Vec<HalfedgeId> = mesh.outgoing(v).filter(is_paired).collect();
+        if mesh.valence(v) - paired.len() > 2 {
+            continue;
+        }
+        found = true;
+        for h in paired {
+            let twin = mesh.twin(h).expect("a sphere map has no border");
+            for side in [h, twin] {
+                arcs[side.face().index()][side.corner()].1 -= EASING;
+            }
+        }
+    }
+    found
+}
+
+/// The quads of partners; the first corner and the third are the ends of the edge between them.
+pub(super) fn quads(mesh: &TriangleMesh, mate: &[u32]) -> Vec<[u32; 4]> {
+    let first = mesh.face_ids().filter(|f| f.0 < mate[f.index()]);
+    let quad = first.map(|face| {
+        let first = mesh.halfedge(face);
+        let all = [first, first.next(), first.prev()];
+        let meets = |h: &HalfedgeId| {
+            mesh.twin(*h)
+                .is_some_and(|twin| twin.face().0 == mate[face.index()])
+        };
+        let between = all.into_iter().find(meets).expect("partners share an edge");
+        corners(mesh, between).map(|v| v.0)
+    });
+    quad.collect()
+}
+
+/// The corners of the two triangles at an edge, from one end of it around.
+fn corners(mesh: &TriangleMesh, h: HalfedgeId) -> [VertexId; 4] {
+    let twin = mesh.twin(h).expect("a sphere map has no border");
+    [
+        mesh.origin(h),
+        mesh.origin(twin.prev()),
+        mesh.target(h),
+        mesh.origin(h.prev()),
+    ]
+}
+
+/// The sine of the worst corner of a quad, seen along its own normal: 1 for a rectangle, negative
+/// where a corner turns the wrong way.
+fn squareness(p: [DVec3; 4]) -> f64 {
+    let normal = (p[2] - p[0]).cross(p[3] - p[1]).normalize_or_zero();
+    let edges: [DVec3; 4] = array::from_fn(|i| (p[(i + 1) % 4] - p[i]).normalize_or_zero());
+    let turns = (0..4).map(|i| edges[i].cross(edges[(i + 1) % 4]).dot(normal));
+    turns.fold(1.0, f64::min)
+}
