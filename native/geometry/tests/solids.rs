@@ -108,7 +108,8 @@ fn covered(mesh: &PolygonMesh, [from, to]: [DVec3; 2]) -> f64 {
 }
 
 fn check(solid: &Solid, counts: &[usize]) {
-    let mesh = PolygonMesh::from_faces(solid.positions.clone(), &solid.faces).unwrap();
+    let mesh =
+        PolygonMesh::from_faces(solid.positions.clone(), &solid.faces).expect("a solid is a mesh");
     for &faces in counts {
         for mirror in [Mirror::Auto, Mirror::Off] {
             let settings = Settings {
@@ -117,7 +118,8 @@ fn check(solid: &Solid, counts: &[usize]) {
                 ..Settings::default()
             };
             let (solver, quiet) = (Solver::default(), Progress::none());
-            let made = remesh(Input::new(&mesh), &settings, &solver, &quiet).unwrap();
+            let made =
+                remesh(Input::new(&mesh), &settings, &solver, &quiet).expect("a solid can be done");
             let what = format!("{faces} {mirror:?} {:?}", made.report.parts[0].flow);
             for crease in solid.creases() {
                 let covered = covered(&made.mesh, crease);

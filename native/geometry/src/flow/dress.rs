@@ -54,10 +54,7 @@ pub(super) fn dress(
         Some(doubled) => either(lines, &plane_edges(doubled)),
         None => lines.clone(),
     };
-    let all = match settings.creases {
-        Creases::All => guides.lines.clone(),
-        Creases::Long => either(&sharp_edges(mesh, sharp_angle), guides.lines),
-    };
+    let all = lines(mesh, guides, (settings.creases, sharp_angle));
     let along = plane(&all);
     let both = all.iter().zip(guides.marked);
     let sharp: HalfedgeMap<bool> = both
@@ -73,10 +70,9 @@ pub(super) fn dress(
     mirror(&mut field);
     tidy(mesh, &mut field, sizes);
     mirror(&mut field);
-    let network = match settings.creases {
-        Creases::All => Some(network(mesh, (&all, &along), guides)?),
-        Creases::Long => None,
-    };
+    let is_solid = settings.creases == Creases::All;
+    let network = is_solid.then(|| network(mesh, (&all, &along), guides));
+    let network = network.transpose()?;
     let h = (total_area(mesh) / settings.n_quads.max(1) as f64).sqrt();
     let lines = creases::lines(mesh, &field, &along, h).into_iter();
     let on_lines = lines.map(|line| line.length_of(mesh, |h| sharp[*h])).sum();
@@ -93,28 +89,32 @@ pub(super) fn dress(
     field::settle_along(mesh, &mut field, (&pull, &along), &part)?;
     mirror(&mut field);
     let wish = wish(mesh, &field, sizes, &progress.part("", 0.7, 1.0))?;
-    let lines = |kept: &HalfedgeMap<bool>| creases::lines(mesh, &field, &plane(kept), h);
-    let kept = kept
-        .into_iter()
-        .filter(|kept| kept.iter().any(|&is_line| is_line));
+    let plan = |lines| planned(guides.mirror, &field, lines);
     let plans = if network.is_some() {
-        let lines = creases::whole_lines(mesh, &field, &along, h);
-        vec![Plan {
-            is_firm: true,
-            ..planned(guides.mirror, &field, lines)
-        }]
+        vec![plan(creases::whole_lines(mesh, &field, &along, h)).firm()]
     } else {
-        let lines = kept.map(lines).chain([Vec::new()]);
-        lines
-            .map(|lines| planned(guides.mirror, &field, lines))
-            .collect()
+        let kept = kept.into_iter().filter(|kept| kept.iter().any(|&is| is));
+        let lines = kept.map(|kept| creases::lines(mesh, &field, &plane(kept), h));
+        lines.chain([Vec::new()]).map(plan).collect()
     };
     Ok(Dressed {
-        plans,
         field,
         wish,
         sharp,
+        plans,
     })
+}
+
+/// The edges that quads should lie along.
+fn lines(
+    mesh: &TriangleMesh,
+    guides: Guides<'_>,
+    (creases, sharp_angle): (Creases, f64),
+) -> HalfedgeMap<bool> {
+    match creases {
+        Creases::All => guides.lines.clone(),
+        Creases::Long => either(&sharp_edges(mesh, sharp_angle), guides.lines),
+    }
 }
 
 /// The network of all lines, and of the edges in the plane where there is one.

@@ -180,8 +180,8 @@ const COUNT_OF_SOLIDS: f64 = 6.0;
 /// Along all creases of a solid the number of quads may be off by one in so many: a cube has 6 n².
 /// With less room lines are given up, and corners are cut.
 const SLACK: usize = 8;
-/// Or by this many, where few are asked for: four stairs need 36.
-const LEAST_SLACK: usize = 30;
+/// Or by this many less half of those that are asked for: four stairs need 36, a bevelled letter 80.
+const SLACK_OF_FEW: usize = 80;
 
 /// Lifts a pass's cancellation to that of the whole.
 macro_rules! lift {
@@ -334,7 +334,7 @@ fn check(whole: &Quantised, (settings, is_firm): (&Settings, bool)) -> Result<()
     }
     let [n_quads, n_wanted] = [whole.grid.quads.len(), settings.n_quads];
     let tolerance = if is_firm {
-        (n_wanted / SLACK).max(LEAST_SLACK)
+        (n_wanted / SLACK).max(SLACK_OF_FEW.saturating_sub(n_wanted / 2))
     } else {
         tolerance(n_wanted)
     };

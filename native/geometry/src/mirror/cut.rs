@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use crate::mesh::{HalfedgeId, Id, TriangleMesh, VertexId};
+use crate::mesh::{HalfedgeId, HalfedgeMap, Id, TriangleMesh, VertexId};
 
 /// What lies on the positive side: triangles without a common numbering of components yet.
 pub struct Side {
@@ -18,11 +18,16 @@ pub struct Side {
 ///
 /// Edges across the plane are split where they meet it. A vertex nearer to that point than the
 /// share `snap` of the edge is moved there instead, so that no slivers come to be; one that would
-/// leave a face flat in the plane is not.
-pub fn positive_side(mesh: &TriangleMesh, axis: usize, snap: f64) -> Side {
+/// leave a face flat in the plane is not, and one on a line only along it.
+pub fn positive_side(
+    mesh: &TriangleMesh,
+    (axis, snap): (usize, f64),
+    lines: Option<&HalfedgeMap<bool>>,
+) -> Side {
     let mut cut = Cut {
         positions: mesh.positions().to_vec(),
         mesh,
+        lines,
         axis,
     };
     for v in mesh.vertex_ids() {
@@ -34,6 +39,7 @@ pub fn positive_side(mesh: &TriangleMesh, axis: usize, snap: f64) -> Side {
 struct Cut<'a> {
     mesh: &'a TriangleMesh,
     positions: Vec<DVec3>,
+    lines: Option<&'a HalfedgeMap<bool>>,
     axis: usize,
 }
 
@@ -55,8 +61,10 @@ impl Cut<'_> {
     }
 
     fn snap(&mut self, v: VertexId, snap: f64) {
-        let neighbours = self.mesh.neighbours(v);
-        let crossings = neighbours.filter_map(|u| self.crossing(v, u));
+        let is_line = |h: &HalfedgeId| self.lines.is_some_and(|lines| lines[*h]);
+        let on_line = self.mesh.outgoing(v).any(|h| is_line(&h));
+        let ways = self.mesh.outgoing(v).filter(|h| !on_line || is_line(h));
+        let crossings = ways.filter_map(|h| self.crossing(v, self.mesh.target(h)));
         let nearest = crossings.reduce(|a, b| if b.0 < a.0 { b } else { a });
         let Some((_, point)) = nearest.filter(|(share, _)| *share < snap) else {
             return;

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::cut::{Side, positive_side};
 use super::{DoubleError, Doubled, mirrored};
 use crate::groups::Groups;
-use crate::mesh::{FaceId, HalfedgeId, Id, TriangleMesh, VertexId};
+use crate::mesh::{FaceId, HalfedgeId, HalfedgeMap, Id, TriangleMesh, VertexId};
 
 /// Cuts a closed mesh of genus 0 at the plane where a coordinate is 0 and closes the largest piece
 /// on the positive side by its image.
@@ -16,7 +16,20 @@ use crate::mesh::{FaceId, HalfedgeId, Id, TriangleMesh, VertexId};
 /// # Errors
 /// [`DoubleError`].
 pub fn double(mesh: &TriangleMesh, axis: usize, snap: f64) -> Result<Doubled, DoubleError> {
-    let (half, sources) = disc(&positive_side(mesh, axis, snap))?;
+    let (half, sources) = disc(&positive_side(mesh, (axis, snap), None))?;
+    glue(&half, sources, axis)
+}
+
+/// The same of a closed mesh with lines, whose vertices stay on them; marked on both sides of each.
+///
+/// # Errors
+/// [`DoubleError`].
+pub fn double_along(
+    mesh: &TriangleMesh,
+    lines: &HalfedgeMap<bool>,
+    (axis, snap): (usize, f64),
+) -> Result<Doubled, DoubleError> {
+    let (half, sources) = disc(&positive_side(mesh, (axis, snap), Some(lines)))?;
     glue(&half, sources, axis)
 }
 

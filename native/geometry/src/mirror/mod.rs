@@ -17,7 +17,7 @@ use crate::mesh::{
     FaceId, HalfedgeId, HalfedgeMap, Id, TriangleMesh, TriangleMeshError, VertexId, VertexMap,
 };
 
-pub use glue::double;
+pub use glue::{double, double_along};
 
 /// A mesh that is its own image in a plane, and which element is whose image.
 ///

@@ -135,7 +135,8 @@ fn symmetric(
 ) -> Result<Result<FlowedPart, String>, Cancelled> {
     let part = progress.part("sphere", 0.0, 0.05);
     let found = clock.step("sphere", || {
-        told(mirror::symmetric(&ground.even, axis, &part))
+        let lines = ground.is_solid().then_some(&ground.lines);
+        told(mirror::symmetric((&ground.even, lines), axis, &part))
     })?;
     let mut symmetric = None;
     let reason = match found.flatten() {

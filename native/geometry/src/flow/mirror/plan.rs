@@ -35,6 +35,14 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// The same with lines that all have to be met.
+    pub fn firm(self) -> Self {
+        Self {
+            is_firm: true,
+            ..self
+        }
+    }
+
     /// All lines, those in the plane first.
     pub fn lines(&self) -> impl Iterator<Item = &Line> {
         self.plane.iter().chain(&self.beside)

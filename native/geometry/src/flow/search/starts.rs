@@ -13,6 +13,9 @@ const N_SCALES: usize = 9;
 const SPREAD: f64 = 0.004;
 /// The scale grows so when a rounding got stuck.
 const ROOM: f64 = 1.03;
+/// And so where lines that must be met were not: below, a shape that needs three times the quads asked
+/// for is never found.
+const ROOM_OF_SOLIDS: f64 = 1.08;
 /// The weight of the count among roundings: moves mend the count and keep the loops.
 const COUNT_WEIGHT: f64 = 5.0;
 /// The most rings imposed.
@@ -49,7 +52,8 @@ pub(super) fn round_at_scales(problem: &Problem, progress: &Progress) -> Result<
             let spread = 1.0 + SPREAD * (i as f64 - 2.0);
             scale *= match found.take(problem, &pool, Attempt { scale, worth }) {
                 Some(n_quads) => (problem.n_quads / n_quads).sqrt() * spread,
-                None => ROOM,
+                None if problem.firm.is_empty() => ROOM,
+                None => ROOM_OF_SOLIDS,
             };
         }
         if found.n_tried - found.n_stuck == n_reached {
@@ -78,13 +82,15 @@ fn pool(problem: &Problem) -> Vec<Cylinder> {
 }
 
 impl Found {
-    /// Rounds and keeps the result if it is the best; returns its number of quads.
+    /// Rounds and keeps the result if it is the best; returns its number of quads if all lines that
+    /// must be are met.
     fn take(&mut self, problem: &Problem, pool: &[Cylinder], attempt: Attempt) -> Option<f64> {
         self.n_tried += 1;
         let Some(candidate) = self.round(problem, pool, attempt) else {
             self.n_stuck += 1;
             return None;
         };
+        let is_met = candidate.score.n_unmet == 0;
         let n_quads = candidate.score.n_quads as f64;
         let weights = Weights {
             count: COUNT_WEIGHT,
@@ -94,7 +100,7 @@ impl Found {
         if (self.best.as_ref()).is_none_or(|best| cost(&candidate) < cost(best)) {
             self.best = Some(candidate);
         }
-        Some(n_quads)
+        is_met.then_some(n_quads)
     }
 
     fn round(

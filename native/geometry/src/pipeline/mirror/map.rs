@@ -1,7 +1,8 @@
 //! An even surface made its own image, with a map to the sphere of its own.
 
 use crate::embed::Solver;
-use crate::mirror::{Doubled, double};
+use crate::mesh::HalfedgeMap;
+use crate::mirror::{Doubled, double, double_along};
 use crate::pipeline::Error;
 use crate::pipeline::part::embed_mesh;
 use crate::progress::Progress;
@@ -12,13 +13,17 @@ use crate::sphere_map::SphereMap;
 const SNAP: f64 = 0.35;
 
 /// A surface that is nearly its own image in the plane where a coordinate is 0, made so exactly
-/// from the positive side, and embedded anew. An error says why that cannot be.
+/// from the positive side, and embedded anew; vertices on the lines given stay on them. An error says why that cannot be.
 pub fn symmetric(
-    map: &SphereMap,
+    (map, lines): (&SphereMap, Option<&HalfedgeMap<bool>>),
     axis: usize,
     progress: &Progress<'_>,
 ) -> Result<Result<(SphereMap, Doubled), String>, Error> {
-    let doubled = match double(map.mesh(), axis, SNAP) {
+    let doubled = match lines {
+        Some(lines) => double_along(map.mesh(), lines, (axis, SNAP)),
+        None => double(map.mesh(), axis, SNAP),
+    };
+    let doubled = match doubled {
         Ok(doubled) => doubled,
         Err(error) => return Ok(Err(error.to_string())),
     };
