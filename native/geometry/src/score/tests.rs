@@ -201,7 +201,10 @@ fn a_symmetric_sphere_has_no_asymmetry_and_a_turned_one_about_a_third() {
 fn scaled_shifted_or_with_axes_exchanged_the_score_stays() {
     let [input, output] = [7, 5].map(|n| shapes::polygons(&shapes::blob(1, n)));
     let (one, quads) = (scored(&input, &output), quad_sphere(6));
-    let aligned = |input, quads| scored(input, quads).flow.alignment_deg.unwrap();
+    let aligned = |input: &PolygonMesh, quads: &PolygonMesh| {
+        let found = scored(input, quads).flow;
+        found.alignment_deg.unwrap()
+    };
     let off = aligned(&input, &quads);
     let close = |a: f64, b: f64| (a - b).abs() < 1e-4 * a.abs().max(0.01);
     for (size, shift) in [(1e-30, 0.0), (1e30, 0.0), (1.0, 50.0)] {
