@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::deform::Target;
 use crate::measure::area_vector;
-use crate::mesh::PolygonMesh;
+use crate::mesh::{PolygonMesh, VertexId};
 use crate::nearest::Bvh;
 
 /// About how many points of the surface are asked.
@@ -32,12 +32,15 @@ pub fn n_missed(mesh: &PolygonMesh, target: &Target) -> usize {
     (n_far * mesh.n_faces()).div_ceil(gaps.len()) + n_astray
 }
 
-/// Quads cut in halves along their first diagonal.
+/// Faces cut in triangles from their first corner, quads in halves.
 pub struct Halves(Vec<[DVec3; 3]>);
 
 impl Halves {
     pub fn of(mesh: &PolygonMesh) -> Self {
-        let cut = |f: &[_]| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]];
+        let cut = |f: &[VertexId]| {
+            let halves = (2..f.len()).map(|i| [f[0], f[i - 1], f[i]]);
+            halves.collect::<Vec<_>>()
+        };
         let halves = mesh.faces().flat_map(cut);
         Self(halves.map(|t| t.map(|v| mesh.position(v))).collect())
     }
