@@ -256,7 +256,9 @@ fn blocks_that_share_an_edge_part_there() {
         (2, 2)
     );
     // Inside out, what lies between the blocks is their inside, and neither end of the edge splits.
-    faces.iter_mut().for_each(|face| face.reverse());
+    for face in &mut faces {
+        face.reverse();
+    }
     let text = message(positions, &faces);
     assert!(
         text.starts_with("4 faces meet at the edge between vertices 3 and 7"),
