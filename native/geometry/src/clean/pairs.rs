@@ -4,6 +4,7 @@
 //! sides alternate, one that turns its inside to the next and one that turns it to the one before.
 //! Each solid's two sides belong together; what lies between two solids is outside. Where the
 //! sides do not alternate nothing is paired: a wall inside a solid, for one, belongs to no side.
+//! Solids that are inside out go on into each other instead, and stay a tangle.
 
 use glam::DVec3;
 

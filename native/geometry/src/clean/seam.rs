@@ -234,10 +234,10 @@ mod tests {
     use crate::clean::take_apart;
     use crate::elementary::direction;
 
-    /// A ring of quads round a hole, from points of its rim; each goes outwards too.
-    fn around(rim: &[DVec3]) -> PolygonMesh {
+    /// A ring of quads round a hole, from points of its rim to others outside.
+    fn around(rim: &[DVec3], outside: impl Fn(DVec3) -> DVec3) -> PolygonMesh {
         let n = rim.len() as u32;
-        let outer = rim.iter().map(|&p| p * 2.0 + DVec3::Z);
+        let outer = rim.iter().map(|&p| outside(p));
         let positions = rim.iter().copied().chain(outer).collect();
         let quad = |i: u32| [i, (i + 1) % n, n + (i + 1) % n, n + i];
         let faces: Vec<[u32; 4]> = (0..n).map(quad).collect();
@@ -255,7 +255,11 @@ mod tests {
         for n in [3, 4, 5, 8, 40] {
             let corner = |i: i32| direction(f64::from(i) * std::f64::consts::TAU / f64::from(n));
             let rim: Vec<DVec3> = (0..n).map(|i| corner(i).extend(0.0)).collect();
-            assert_eq!(n_welded(&around(&rim), 1.0), 0, "{n} corners");
+            assert_eq!(
+                n_welded(&around(&rim, |p| p * 2.0 + DVec3::Z), 1.0),
+                0,
+                "{n} corners"
+            );
         }
     }
 
@@ -271,7 +275,7 @@ mod tests {
             .chain([tips[1]])
             .collect();
         let rim = [rim, above].concat();
-        let mesh = around(&rim);
+        let mesh = around(&rim, |p| DVec3::new(p.x, p.y * 1e6, 1.0));
         assert_eq!((n_welded(&mesh, 1e-6), n_welded(&mesh, 1e-8)), (7, 0));
         let apart = take_apart(&mesh, Some(1e-6), &Progress::none()).unwrap();
         assert_eq!(apart.mesh.border_loops().len(), 1, "the outer rim is left");

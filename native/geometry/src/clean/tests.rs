@@ -246,19 +246,24 @@ fn blocks_that_share_an_edge_part_there() {
         4 => 7,
         _ => v + 8,
     };
-    for n_turned in [0, 6] {
-        let mut faces = cube_quads();
-        let others = cube_quads().into_iter();
-        faces.extend(others.map(|f| f.into_iter().map(shared).collect::<Vec<u32>>()));
-        // Inside out, what lies between the blocks is their inside: one closed part.
-        faces[..2 * n_turned]
-            .iter_mut()
-            .for_each(|face| face.reverse());
-        let result = cleaned(positions.clone(), &faces).unwrap();
-        assert!(result.mesh.is_closed(), "{n_turned}");
-        let n_parts = result.mesh.face_components().1;
-        assert_eq!(n_parts, if n_turned == 0 { 2 } else { 1 });
+    let mut faces = cube_quads();
+    let others = cube_quads().into_iter();
+    faces.extend(others.map(|f| f.into_iter().map(shared).collect::<Vec<u32>>()));
+    let result = cleaned(positions.clone(), &faces).unwrap();
+    assert_closed(&result, 4);
+    assert_eq!(
+        (result.mesh.face_components().1, result.report.n_split),
+        (2, 2)
+    );
+    // Inside out, what lies between the blocks is their inside, and neither end of the edge splits.
+    for face in &mut faces {
+        face.reverse();
     }
+    let text = message(positions, &faces);
+    assert!(
+        text.starts_with("4 faces meet at the edge between vertices 3 and 7"),
+        "{text}"
+    );
 }
 
 #[test]
