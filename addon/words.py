@@ -11,6 +11,7 @@ STEPS = {
     "embed": "unfolding",
     "sphere": "mapping",
     "flow": "laying the loops",
+    "pair": "pairing triangles into quads",
     "deform": "fitting to the surface",
     "transfer": "carrying over your data",
     "score": "measuring",
