@@ -253,8 +253,7 @@ def test_objects_that_share_a_mesh_share_the_result_where_it_looks_alike(
     assert len({thing.data for thing in things}) == len(bpy.data.meshes) == 3
     assert [stack(thing) for thing in things] == [[], [], [], []]
     width = [np.abs(places(thing.data)).max() for thing in (first, second, fourth)]
-    assert width == sorted(width, reverse=True)
-    assert width[1] < 0.9 < width[0]
+    assert max(width[1:]) < 0.9 < width[0]
 
 
 def nodes(name: str, *kinds: str) -> Any:  # noqa: ANN401

@@ -30,7 +30,7 @@ def test_a_scrap_comes_back_bit_for_bit_and_is_named(mesh: Arrays) -> None:
         scale=(1.7, 0.3, 1.1),
         material_index=np.arange(len(mesh[1]), dtype=np.int32),
         carried_edges=edges,
-        cut_edges=np.zeros((0, 2), np.int32),
+        cut_edges=[np.zeros((0, 2), np.int32)],
     )
     assert result.kept_faces == 1
     assert np.array_equal(result.positions[result.corner_vert[-3:]], SCRAP)
@@ -39,8 +39,9 @@ def test_a_scrap_comes_back_bit_for_bit_and_is_named(mesh: Arrays) -> None:
     assert result.material_index[-1] == 0
     assert result.origins is not None
     assert result.origins.faces[-1] == 0
-    assert result.origins.corner_corners[-3:, 0].tolist() == [0, 1, 2]
-    assert result.origins.corner_weights[-3:].tolist() == [[1, 0, 0]] * 3
+    (corners,), (weights,) = result.origins.corner_corners, result.origins.corner_weights
+    assert corners[-3:, 0].tolist() == [0, 1, 2]
+    assert weights[-3:].tolist() == [[1, 0, 0]] * 3
     assert (result.carried_from.tolist(), len(result.positions)) == ([0], len(result.sphere))
     assert result.carried_edges[0].tolist() == [len(result.positions) - n for n in (2, 1)]
     assert not result.sphere[-3:].any()

@@ -14,7 +14,7 @@ def horned() -> Arrays:
 
 
 def test_a_side_that_was_replaced_is_a_warning_and_grave_where_the_shape_is_another() -> None:
-    made = orbflow_native.remesh(*horned(), faces=200, mirror="x", score_samples=0)
+    made = orbflow_native.remesh(*horned(), faces=400, mirror="x", score_samples=0)
     far, replaced = made.report["warnings"]
     assert (far["kind"], far["grave"]) == ("far", True)
     assert far["in_edges"] > 2
@@ -24,7 +24,7 @@ def test_a_side_that_was_replaced_is_a_warning_and_grave_where_the_shape_is_anot
 
 def test_a_strict_run_refuses_what_is_grave() -> None:
     with pytest.raises(orbflow_native.InputError, match="not sound") as refused:
-        orbflow_native.remesh(*horned(), faces=200, mirror="x", strict=True)
+        orbflow_native.remesh(*horned(), faces=400, mirror="x", strict=True)
     kinds = [warning["kind"] for warning in refused.value.warnings]
     assert kinds == ["far", "mirror-replaced"]
     assert refused.value.kept == []
