@@ -12,7 +12,7 @@ use orbflow_geometry::hierarchy::CollapseHierarchy;
 use orbflow_geometry::measure::topology;
 use orbflow_geometry::mesh::{FaceId, Id, PolygonMesh};
 use orbflow_geometry::pipeline::{
-    self, Error, Flaw, Input, Kind, Outcome, Remeshed, Settings, SmallParts,
+    self, Error, Flaw, Input, Kind, Mirror, Outcome, Remeshed, Settings, SmallParts,
 };
 use orbflow_geometry::progress::Progress;
 use proptest::prelude::*;
@@ -74,7 +74,8 @@ fn a_stray_triangle_stays_and_the_box_is_done() {
         (3, 1, 3.0)
     );
     let made = result.mesh.n_faces() - 1;
-    assert!(made.abs_diff(100) <= 3, "{made}");
+    // Of all counts only some make a cube.
+    assert!(made.abs_diff(100) <= 12, "{made}");
     assert_eq!(result.report.parts.len(), 1);
     assert_eq!(result.sphere.len(), result.mesh.n_vertices());
     assert_eq!(result.sphere[result.mesh.n_vertices() - 1], DVec3::ZERO);
@@ -210,7 +211,12 @@ fn equal_parts_get_the_fewest_faces_each_when_they_are_too_many() {
             1.0 + 0.03 * f64::from(i),
         );
     }
-    let result = remesh(&mixed.mesh(), &settings(30)).unwrap();
+    // A cube that is its own image in a plane through it has ten quads.
+    let settings = Settings {
+        mirror: Mirror::Off,
+        ..settings(30)
+    };
+    let result = remesh(&mixed.mesh(), &settings).unwrap();
     assert_eq!(
         (result.report.parts.len(), result.report.kept.len()),
         (12, 0)
