@@ -12,7 +12,10 @@ fn horned() -> String {
     let ball = ball("");
     let drawn = |line: &str| match line.strip_prefix("v ") {
         Some(numbers) => {
-            let p: Vec<f64> = numbers.split(' ').map(|x| x.parse().unwrap()).collect();
+            let p: Vec<f64> = numbers
+                .split(' ')
+                .map(|x| x.parse().expect("a number"))
+                .collect();
             let x = p[0] + 4.0 * (p[0] - 0.7).max(0.0);
             format!("v {x} {} {}\n", p[1], p[2])
         }

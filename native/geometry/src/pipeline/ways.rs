@@ -45,7 +45,10 @@ pub fn flow_part(
     } else if rods::are_clear(target) {
         let wanted = Marked::new(target.mesh(), asked.marked);
         let found = rods::rings(map, (target, &wanted), asked, (clock, &part))?;
-        if found.as_ref().is_ok_and(FlowedPart::is_sound) {
+        // Where rings cannot be their own image, quads off the metric may.
+        let is_uneven = |found: &FlowedPart| matches!(found.mirrored, Some(Err(_)));
+        let is_it = |found: &FlowedPart| found.is_sound() && !is_uneven(found);
+        if found.as_ref().is_ok_and(is_it) {
             return Ok(found);
         }
         from = 0.05;

@@ -186,5 +186,5 @@ pub fn swept(path: &[DVec3], radius: f64, n: u32) -> TriangleMesh {
         }
     }
     let faces = faces.into_iter().map(|f| f.map(VertexId)).collect();
-    TriangleMesh::new(positions, faces).unwrap()
+    TriangleMesh::new(positions, faces).expect("the shape is a surface")
 }

@@ -152,9 +152,20 @@ pub fn rod(
     progress.at(0.3)?;
     let height = Height::new(&fine.mesh, girth).ok_or(RodError::NoLimb)?;
     progress.at(0.6)?;
+    around(&fine, &height, girth, settings, progress)
+}
+
+/// Rings on the levels of a height.
+fn around(
+    fine: &Fine,
+    height: &Height,
+    girth: f64,
+    settings: &Settings<'_>,
+    progress: &Progress,
+) -> Result<Rod, RodError> {
     let levels = Levels {
         mesh: &fine.mesh,
-        height: &height,
+        height,
     };
     let profile = Profile::new(&levels, girth).ok_or(RodError::NoLimb)?;
     let middle = profile.median_girth();
@@ -162,7 +173,7 @@ pub fn rod(
         return Err(RodError::NoLimb);
     }
     progress.at(0.7)?;
-    let lines = Lines::new(&fine, height.ends, &height.of, &profile);
+    let lines = Lines::new(fine, height.ends, &height.of, &profile);
     let crossed = crossed(&levels, &profile, &lines);
     let wishes = Wishes {
         n_quads: settings.n_quads,
@@ -190,6 +201,11 @@ pub fn rod(
     let tips = height.ends.map(|end| fine.mesh.position(end));
     let ball = Ball::new(&rings, plan.cap, tips, settings.mirror);
     let strips = strips::strips(&ball.quads, ball.positions.len()).unwrap_or_default();
+    let n_round_met = plan
+        .stops
+        .iter()
+        .filter(|stop| stop.round.is_some())
+        .count();
     Ok(Rod {
         mesh: PolygonMesh::from_faces(ball.positions, &ball.quads)?,
         sphere: ball.sphere,
@@ -200,12 +216,7 @@ pub fn rod(
         n_on_rings: plan.n_round * plan.stops.len(),
         n_lines: [
             lines.n_along() + lines.round.len(),
-            order.len()
-                + plan
-                    .stops
-                    .iter()
-                    .filter(|stop| stop.round.is_some())
-                    .count(),
+            order.len() + n_round_met,
         ],
     })
 }

@@ -84,12 +84,11 @@ impl Rings<'_> {
 
     /// The section of a stop, anticlockwise seen from the far end.
     fn section(&self, stop: Stop) -> Option<Section> {
-        let section = match stop.round {
-            Some(i) => self.lines.round[i].1.clone(),
-            None => {
-                let level = self.profile.level(stop.along);
-                self.levels.section(level, |h| self.lines.along[h])?
-            }
+        let section = if let Some(i) = stop.round {
+            self.lines.round[i].1.clone()
+        } else {
+            let level = self.profile.level(stop.along);
+            self.levels.section(level, |h| self.lines.along[h])?
         };
         let reach = self.profile.median_girth() * 0.5;
         let way = self.profile.direction(stop.along, reach);
