@@ -12,16 +12,25 @@ import math
 import resource
 import subprocess
 import sys
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+
+Points = NDArray[np.float64]
+Faces = list[list[int]]
+Way = Sequence[Sequence[float]]
 
 TOOLS = Path(__file__).resolve().parents[2] / "shared" / "tools"
 
 
-def tube(path, radius, n_round, *, tips=0.0, closed_tips=False):
-    """Rings of corners round a path; ends are flat n-gons, or go to a point."""
-    path = np.asarray(path, float)
+def tube(
+    way: Way, radius: float, n_round: int, *, tips: float = 0.0, closed_tips: bool = False
+) -> tuple[Points, Faces]:
+    """Rings of corners round a way; ends are flat n-gons, or go to a point."""
+    path = np.asarray(way, float)
     tangents = np.gradient(path, axis=0)
     tangents /= np.linalg.norm(tangents, axis=1)[:, None]
     up = np.cross(tangents[0], [0.3, 0.5, 0.8])
@@ -51,16 +60,19 @@ def tube(path, radius, n_round, *, tips=0.0, closed_tips=False):
     return np.array(points), faces
 
 
-def line(n, length):
+def line(n: int, length: float) -> Way:
+    """A straight way."""
     return [[length * i / (n - 1), 0, 0] for i in range(n)]
 
 
-def helix(turns, radius, pitch, n):
+def helix(turns: float, radius: float, pitch: float, n: int) -> Way:
+    """The way of a spring."""
     angles = [2 * math.pi * turns * i / (n - 1) for i in range(n)]
     return [[radius * math.cos(a), radius * math.sin(a), pitch * a / 2 / math.pi] for a in angles]
 
 
-def wave(n, length, height, waves):
+def wave(n: int, length: float, height: float, waves: float) -> Way:
+    """A way that swings to the sides and up and down."""
     steps = [i / (n - 1) for i in range(n)]
     return [
         [length * s, height * math.sin(2 * math.pi * waves * s), height * math.cos(5 * s)]
@@ -68,7 +80,14 @@ def wave(n, length, height, waves):
     ]
 
 
-def sheet(n, m, thickness, surface, *, is_round=False):
+def sheet(
+    n: int,
+    m: int,
+    thickness: float,
+    surface: Callable[[float, float], tuple[float, float, float]],
+    *,
+    is_round: bool = False,
+) -> tuple[Points, Faces]:
     """Two sides and a rim between them; a disc where it is round."""
     grid = {}
     top, bottom = [], []
@@ -117,30 +136,51 @@ SHAPES = {
     "cable_1": (lambda: tube(wave(150, 60, 6, 2), 0.25, 8), 1500, "choose"),
     "cable_2": (lambda: tube(wave(300, 120, 9, 4), 0.15, 6), 2000, "report"),
     "wire_500": (lambda: tube(wave(400, 500, 30, 3), 0.5, 8), 2000, "choose"),
-    "elbow": (lambda: tube([[0, 0, 0], [30, 0, 0], [30, 30, 0], [30, 30, 30]], 0.6, 12),
-              600, "report"),
+    "elbow": (
+        lambda: tube([[0, 0, 0], [30, 0, 0], [30, 30, 0], [30, 30, 30]], 0.6, 12),
+        600,
+        "report",
+    ),
     "slab_01": (lambda: sheet(10, 8, 0.02, lambda u, v: (u, 0.8 * v, 0)), 800, "choose"),
     "slab_002": (lambda: sheet(12, 6, 0.004, lambda u, v: (u, 0.5 * v, 0)), 1000, "report"),
-    "wavy_005": (lambda: sheet(20, 12, 0.01, lambda u, v: (u, 0.7 * v, 0.1 * math.sin(4 * u + v))),
-                 1500, "choose"),
-    "roof_004": (lambda: sheet(16, 10, 0.008, lambda u, v: (u, 0.6 * v, 0.15 * (1 - u * u))),
-                 700, "report"),
-    "disc_005": (lambda: sheet(16, 16, 0.01, lambda u, v: (u, v, 0.1 * u * v), is_round=True),
-                 900, "choose"),
-    "dish_003": (lambda: sheet(20, 20, 0.006, lambda u, v: (u, v, 0.3 * (u * u + v * v)),
-                               is_round=True), 1200, "report"),
-    "blade_01": (lambda: sheet(24, 6, 0.02, lambda u, v: (
-        4 * u, 0.4 * v * (1.05 - 0.5 * u), 0.2 * u * u)), 600, "report"),
+    "wavy_005": (
+        lambda: sheet(20, 12, 0.01, lambda u, v: (u, 0.7 * v, 0.1 * math.sin(4 * u + v))),
+        1500,
+        "choose",
+    ),
+    "roof_004": (
+        lambda: sheet(16, 10, 0.008, lambda u, v: (u, 0.6 * v, 0.15 * (1 - u * u))),
+        700,
+        "report",
+    ),
+    "disc_005": (
+        lambda: sheet(16, 16, 0.01, lambda u, v: (u, v, 0.1 * u * v), is_round=True),
+        900,
+        "choose",
+    ),
+    "dish_003": (
+        lambda: sheet(20, 20, 0.006, lambda u, v: (u, v, 0.3 * (u * u + v * v)), is_round=True),
+        1200,
+        "report",
+    ),
+    "blade_01": (
+        lambda: sheet(24, 6, 0.02, lambda u, v: (4 * u, 0.4 * v * (1.05 - 0.5 * u), 0.2 * u * u)),
+        600,
+        "report",
+    ),
 }
 
 
-def write(path, points, faces):
+def write(path: Path, points: Points, faces: Faces) -> None:
+    """Writes a mesh as OBJ."""
     rows = [f"v {p[0]:.9g} {p[1]:.9g} {p[2]:.9g}" for p in points]
     rows += ["f " + " ".join(str(v + 1) for v in face) for face in faces]
     path.write_text("\n".join(rows) + "\n", encoding="utf-8")
 
 
-def remesh(program, source, n_faces, folder):
+def remesh(
+    program: Path, source: Path, n_faces: int, folder: Path
+) -> tuple[dict[str, Any] | None, float, Path]:
     """Runs the program; returns its report and the seconds of processor time it took."""
     out, told = folder / f"{source.stem}_out.obj", folder / f"{source.stem}.json"
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -153,13 +193,15 @@ def remesh(program, source, n_faces, folder):
     return json.loads(told.read_text(encoding="utf-8")), cpu, out
 
 
-def figures(source, out):
+def figures(source: Path, out: Path) -> dict[str, Any]:
+    """What the quality tools say of a result."""
     command = [sys.executable, "-m", "quality", source, out, "--json", "--more"]
     done = subprocess.run(command, cwd=TOOLS, capture_output=True, text=True, check=True)
     return json.loads(done.stdout)
 
 
-def row(name, program, folder, job):
+def row(name: str, program: Path, folder: Path, job: tuple[Path, int]) -> str:
+    """One line of the table."""
     source, n_faces = job
     report, cpu, out = remesh(program, source, n_faces, folder)
     if report is None:
@@ -177,7 +219,8 @@ def row(name, program, folder, job):
     )
 
 
-def main():
+def main() -> None:
+    """Makes, remeshes and measures all shapes that are asked for."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("program", type=Path)
     parser.add_argument("folder", type=Path)
@@ -186,7 +229,9 @@ def main():
     options = parser.parse_args()
     options.folder.mkdir(parents=True, exist_ok=True)
     folder = options.folder.resolve()
-    print("shape              CPU s faces  off %   inv  cross  haus % jac 1  irr % spir% loop%  mirror")
+    print(
+        "shape              CPU s faces  off %   inv  cross  haus % jac 1  irr % spir% loop%  how"
+    )
     for name, (shape, n_faces, half) in SHAPES.items():
         if options.half in ("all", half) and options.only in name:
             source = folder / f"{name}.obj"

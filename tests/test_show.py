@@ -274,7 +274,8 @@ def test_a_part_that_stays_is_shown_where_it_lies_in_the_result(open_fixture: Op
     half = open_fixture("05")
     with bpy.data.libraries.load(str(FIXTURES / "03_shared_data.blend")) as (_, wanted):
         wanted.objects = ["First"]
-    (ball,) = wanted.objects
+    # Names while the file is open, objects afterwards.
+    ball: Any = wanted.objects[0]
     bpy.context.scene.collection.objects.link(ball)
     ball.location.x = 5
     select(half, ball)
