@@ -15,6 +15,7 @@
 //! Not done here: choosing the primitive (`sphere`), proving that faces do not cross in space.
 
 mod cover;
+mod deformed;
 mod flips;
 mod follow;
 mod least_squares;
@@ -188,63 +189,6 @@ pub fn deform(
         [report.n_crossing, report.n_crossing_left] = separate::separate(&mut sheet, progress)?;
     }
     Ok(Deformed::new(sheet, report))
-}
-
-impl Deformed {
-    /// Faces that lie on the surface already, with their points on the sphere and the edges that lie
-    /// on sharp lines, each once, in order. What is inverted or crosses is counted.
-    ///
-    /// # Errors
-    /// Faces that do not cover the sphere once, and [`Cancelled`].
-    pub fn laid(
-        mesh: PolygonMesh,
-        sphere: Vec<DVec3>,
-        on_lines: Vec<[VertexId; 2]>,
-        progress: &Progress,
-    ) -> Result<Self, Error> {
-        check_cover(&mesh, &sphere)?;
-        let n_crossing = separate::n_crossing(&mesh, progress)?;
-        let report = Report {
-            n_feature_goals: on_lines.len(),
-            n_feature_vertices: on_lines.len(),
-            n_crossing,
-            n_crossing_left: n_crossing,
-            n_inverted: untangle::n_inverted(&mesh),
-            ..Report::default()
-        };
-        Ok(Self {
-            features: on_lines.clone(),
-            led: on_lines,
-            mesh,
-            sphere,
-            report,
-        })
-    }
-
-    /// The same with its vertices elsewhere in space; what is inverted is counted anew.
-    ///
-    /// # Panics
-    /// When the number of positions differs.
-    #[must_use]
-    pub fn moved(mut self, positions: Vec<DVec3>) -> Self {
-        self.mesh = self.mesh.with_positions(positions);
-        self.report.n_inverted = untangle::n_inverted(&self.mesh);
-        self
-    }
-
-    fn new(sheet: Sheet, mut report: Report) -> Self {
-        let [features, led] = [sheet.features(), sheet.led()];
-        let (mesh, sphere) = sheet.into_mesh();
-        debug_assert_eq!(check_cover(&mesh, &sphere), Ok(()));
-        report.n_inverted = untangle::n_inverted(&mesh);
-        Self {
-            mesh,
-            sphere,
-            features,
-            led,
-            report,
-        }
-    }
 }
 
 /// Rounds in which flowing quads are led to where they are wanted; later ones move next to nothing.

@@ -29,6 +29,7 @@ mod rings;
 pub mod rod;
 pub mod rounding;
 pub mod search;
+mod settings;
 pub mod singularities;
 pub mod sizes;
 mod stars;
@@ -36,4 +37,5 @@ pub mod strips;
 mod thin;
 pub mod wish;
 
-pub use quads::{Creases, Error, Flow, Guides, Report, Settings, flow};
+pub use quads::{Error, Flow, Guides, Report, flow};
+pub use settings::{Creases, Settings};
