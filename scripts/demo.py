@@ -74,8 +74,8 @@ def main(out: Path) -> None:
     before = out / "spot_input.obj"
     export(before)
     bpy.ops.object.orbflow_remesh(faces=FACES)
-    panel = sys.modules["bl_ext.user_default.orbflow.panel"]
-    report = panel.last_report("Spot")
+    runs = sys.modules["bl_ext.user_default.orbflow.runs"]
+    report = runs.last_report("Spot")
     after = out / "spot_orbflow.obj"
     export(after)
     bpy.ops.wm.save_as_mainfile(filepath=str(out.resolve() / "spot_orbflow.blend"), compress=True)
