@@ -47,6 +47,20 @@ def values(mesh: bpy.types.Mesh, name: str, domain: str, kind: str) -> NDArray |
     return found if len(found) else None
 
 
+def corners_ahead(starts: NDArray[np.integer], n_corners: int) -> NDArray[np.intp]:
+    """The corner that follows each in its face, whose corners start at these, (L,)."""
+    ahead = np.arange(1, n_corners + 1)
+    # The last corner of a face is followed by its first.
+    ahead[np.append(starts[1:], n_corners) - 1] = starts
+    return ahead
+
+
+def edge_keys(ends: NDArray[np.integer]) -> NDArray[np.int64]:
+    """One number for every pair of vertices, whichever comes first, (N,) of (N, 2)."""
+    low, high = np.sort(ends, axis=1).astype(np.int64).T
+    return (low << 32) + high
+
+
 def _read(
     mesh: bpy.types.Mesh, name: str, field: str, shape: tuple[int, ...], kind: type
 ) -> NDArray:

@@ -9,6 +9,8 @@ import numpy as np
 import orbflow_native
 from numpy.typing import NDArray
 
+from . import attributes
+
 Int = NDArray[np.int32]
 Float = NDArray[np.float32]
 
@@ -85,14 +87,16 @@ def cut(result: orbflow_native.Remeshed, half: Half) -> orbflow_native.Remeshed:
     old, new = np.unique(corners[loops], return_inverse=True)
     number = np.full(len(result.positions), -1, np.int32)
     number[old] = np.arange(len(old))
+    new = new.astype(np.int32)
     kept_lengths = lengths[is_kept]
+    new_starts = (np.cumsum(kept_lengths) - kept_lengths).astype(np.int32)
     edges = number[result.carried_edges]
-    is_there = _are_edges(edges, new.astype(np.int32), kept_lengths)
+    is_there = _are_edges(edges, new, new_starts)
     material_index, origins = result.material_index, result.origins
     made = _Cut(
         result.positions[old],
-        (np.cumsum(kept_lengths) - kept_lengths).astype(np.int32),
-        new.astype(np.int32),
+        new_starts,
+        new,
         None if material_index is None else material_index[is_kept],
         edges[is_there],
         result.carried_from[is_there],
@@ -117,18 +121,12 @@ def _of_half(
     )
 
 
-def _are_edges(ends: Int, corners: Int, lengths: NDArray[np.integer]) -> NDArray[np.bool_]:
+def _are_edges(ends: Int, corners: Int, starts: NDArray[np.integer]) -> NDArray[np.bool_]:
     """Which pairs of vertices are edges of faces."""
-    ahead = np.arange(1, len(corners) + 1)
-    stops = np.cumsum(lengths)
-    ahead[stops - 1] = stops - lengths
-
-    def key(ends: NDArray[np.integer]) -> NDArray[np.int64]:
-        low, high = np.sort(ends, axis=1).astype(np.int64).T
-        return (low << 32) + high
-
+    ahead = attributes.corners_ahead(starts, len(corners))
     sides = np.stack([corners, corners[ahead]], axis=1)
-    return np.isin(key(ends), key(sides)) & (ends >= 0).all(axis=1)
+    is_edge = np.isin(attributes.edge_keys(ends), attributes.edge_keys(sides))
+    return is_edge & (ends >= 0).all(axis=1)
 
 
 def _why(result: orbflow_native.Remeshed) -> str:

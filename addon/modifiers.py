@@ -171,7 +171,7 @@ def _applied(copies: StandIns, thing: bpy.types.Object) -> tuple[str, ...]:
     makes = [_is_generative(copies.context, each) for each in counted]
     n = max((i + 1 for i, is_generative in enumerate(makes) if is_generative), default=0)
     # Nodes may do anything: they count where they change the faces.
-    nodes = [i for i in range(n, len(counted)) if _has_nodes(counted[i])]
+    nodes = [i for i in range(n, len(counted)) if has_nodes(counted[i])]
     changing = (i for i in reversed(nodes) if copies.of(thing).is_changed(names[:i], names[i]))
     return tuple(names[: next(changing, n - 1) + 1])
 
@@ -256,7 +256,8 @@ def _is_generative(context: bpy.types.Context, modifier: bpy.types.Modifier) -> 
     return modifier.type in _GENERATIVE
 
 
-def _has_nodes(modifier: bpy.types.Modifier) -> bool:
+def has_nodes(modifier: bpy.types.Modifier) -> bool:
+    """Whether a modifier runs geometry nodes."""
     return modifier.type == "NODES" and modifier.node_group is not None
 
 

@@ -7,7 +7,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from . import attributes, runs, spots, words
+from . import attributes, modifiers, runs, spots, words
 from .job import Done, Failed
 from .mesh_arrays import MeshArrays
 from .runs import Left, Line, Print
@@ -50,7 +50,7 @@ def done(outcome: Done, report: dict[str, Any], old: Before) -> Told:
     task = outcome.task
     thing = bpy.data.objects[task.name, None]
     report["n_hidden"] = old.n_hidden
-    report["nodes"] = [each.name for each in thing.modifiers if _has_nodes(each)]
+    report["nodes"] = [each.name for each in thing.modifiers if modifiers.has_nodes(each)]
     if old.print:
         runs.forget_left(old.print)
     if report["kept"]:
@@ -99,7 +99,3 @@ def _numbers(thing: bpy.types.Object | None, arrays: MeshArrays) -> Numbers:
 def _is_only_one(name: str) -> bool:
     """Whether no linked object has the same name."""
     return sum(each.name == name for each in bpy.data.objects) == 1
-
-
-def _has_nodes(modifier: bpy.types.Modifier) -> bool:
-    return modifier.type == "NODES" and modifier.node_group is not None

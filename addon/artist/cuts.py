@@ -84,10 +84,7 @@ def read(mesh: bpy.types.Mesh) -> Seams:
     """Finds out which sides of faces are on one edge."""
     corner_vert = attributes.corner_verts(mesh)
     loops = np.arange(len(corner_vert))
-    starts = attributes.loop_starts(mesh)
-    # The last corner of a face is followed by its first.
-    ahead = loops + 1
-    ahead[np.append(starts[1:], len(loops)) - 1] = starts
+    ahead = attributes.corners_ahead(attributes.loop_starts(mesh), len(loops))
     ends = np.stack([loops, ahead], axis=1)
     names, twins = _named(attributes.positions(mesh), corner_vert[ends])
     # Sides of one edge may run either way.

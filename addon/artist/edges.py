@@ -8,7 +8,7 @@ import numpy as np
 import orbflow_native
 from numpy.typing import NDArray
 
-from ..attributes import corner_edges, edge_verts
+from ..attributes import corner_edges, edge_keys, edge_verts
 from . import cuts, layers
 from .layers import Layer
 
@@ -67,11 +67,6 @@ def _with_creases(mesh: bpy.types.Mesh, found: list[Layer]) -> list[Layer]:
 
 def _find(mesh: bpy.types.Mesh, ends: Int) -> NDArray[np.intp]:
     """Which edges of a mesh have these ends."""
-
-    def key(ends: Int) -> NDArray[np.int64]:
-        low, high = np.sort(ends, axis=1).astype(np.int64).T
-        return low * len(mesh.vertices) + high
-
-    own = key(edge_verts(mesh))
+    own = edge_keys(edge_verts(mesh))
     order = np.argsort(own)
-    return order[np.searchsorted(own, key(ends), sorter=order)]
+    return order[np.searchsorted(own, edge_keys(ends), sorter=order)]
