@@ -171,14 +171,7 @@ pub fn deform(
             &part,
         )?;
     }
-    let fit = Fit {
-        target,
-        reach: sheet.mean_edge(),
-        anchor: settings.anchor,
-        sites: &[],
-        squareness: 0.0,
-        even: None,
-    };
+    let fit = Fit::plain(target, sheet.mean_edge(), settings.anchor);
     report.n_unprojected = project::project(&mut sheet, target, fit.reach, progress)?;
     let part = progress.part("", 0.7, 1.0);
     fit.straddle(&mut sheet, settings.n_straddles, &part)?;

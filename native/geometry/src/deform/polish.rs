@@ -55,14 +55,7 @@ pub fn lay(
     }
     report.n_feature_goals = sheet.vertex_ids().filter(|&v| sheet.is_pinned(v)).count();
     report.n_feature_vertices = report.n_feature_goals;
-    let fit = Fit {
-        target,
-        reach: sheet.mean_edge(),
-        anchor: settings.anchor,
-        sites: &[],
-        squareness: 0.0,
-        even: None,
-    };
+    let fit = Fit::plain(target, sheet.mean_edge(), settings.anchor);
     report.n_unprojected = project(&mut sheet, target, fit.reach, progress)?;
     fit.straddle(
         &mut sheet,

@@ -78,7 +78,20 @@ pub(super) struct Even<'a> {
     pub squares: f64,
 }
 
-impl Fit<'_> {
+impl<'a> Fit<'a> {
+    /// Faces through the surface and nothing more: no shape of theirs is wished for, and no step spoils
+    /// one.
+    pub fn plain(target: &'a Target, reach: f64, anchor: Anchor) -> Self {
+        Self {
+            target,
+            reach,
+            anchor,
+            sites: &[],
+            squareness: 0.0,
+            even: None,
+        }
+    }
+
     /// Moves vertices to the least squares fit, so many times; pinned ones stay.
     pub fn straddle(
         &self,

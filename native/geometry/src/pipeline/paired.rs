@@ -52,10 +52,9 @@ pub struct Laid {
 impl Laid {
     pub fn new(deformed: Deformed, sphere: Option<sphere::Report>, target: &Target) -> Self {
         let halves = Halves::of(&deformed.mesh);
-        let area: f64 = halves.pieces().map(|(_, area)| area).sum();
         let gaps = halves.gaps(target);
         let farthest = gaps.into_iter().fold(0.0, f64::max);
-        let quad_area = area / deformed.mesh.n_faces() as f64;
+        let quad_area = halves.area() / deformed.mesh.n_faces() as f64;
         Self {
             off: (farthest / quad_area.max(f64::MIN_POSITIVE)).sqrt(),
             deformed,

@@ -19,8 +19,7 @@ const MOST_ASTRAY: f64 = 1.0;
 /// lie far from the surface.
 pub fn n_missed(mesh: &PolygonMesh, target: &Target) -> usize {
     let halves = Halves::of(mesh);
-    let area: f64 = halves.pieces().map(|(_, area)| area).sum();
-    let quad_area = area / mesh.n_faces() as f64;
+    let quad_area = halves.area() / mesh.n_faces() as f64;
     let gaps = halves.gaps(target);
     let is_missed = |gap: &&f64| **gap > MOST_MISSED.powi(2) * quad_area;
     let n_far = gaps.iter().filter(is_missed).count();
@@ -52,6 +51,11 @@ impl Halves {
             (middle, area_vector(*half).length())
         };
         self.0.iter().map(piece)
+    }
+
+    /// The area of all.
+    pub fn area(&self) -> f64 {
+        self.pieces().map(|(_, area)| area).sum()
     }
 
     /// The squared distances of some vertices of the target, evenly chosen.

@@ -138,18 +138,10 @@ pub fn walled_box(shift: DVec3) -> Mixed {
 /// Two blocks that share an edge, with the edge's vertices in common.
 pub fn touching_blocks() -> PolygonMesh {
     let corner = |i: u32, at: [u32; 3]| [at[0] + (i & 1), at[1] + (i >> 1 & 1), at[2] + (i >> 2)];
-    let quads = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
     let mut names: Vec<[u32; 3]> = Vec::new();
     let mut faces = Vec::new();
     for block in [[0, 0, 0], [1, 1, 0]] {
-        for quad in quads {
+        for quad in super::common::CUBE_QUADS {
             let name = |i: u32| {
                 let at = corner(i, block);
                 names

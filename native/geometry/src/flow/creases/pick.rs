@@ -35,16 +35,14 @@ pub fn lines(
     sharp: &HalfedgeMap<bool>,
     h: f64,
 ) -> Vec<Line> {
-    let mut all: Vec<(f64, Vec<HalfedgeId>)> = chains(mesh, field, sharp)
+    let all = longest_first(mesh, chains(mesh, field, sharp));
+    let long = all
         .into_iter()
-        .map(|line| (length(mesh, &line), line))
-        .filter(|(length, _)| *length >= SHORTEST * h)
-        .collect();
-    all.sort_by(|a, b| b.0.total_cmp(&a.0));
+        .filter(|(length, _)| *length >= SHORTEST * h);
     let singular = mesh.vertex_ids().filter(|&v| field.indices[v] != 0);
     let mut kept: Vec<VertexId> = singular.collect();
     let mut lines = Vec::new();
-    for (_, line) in all {
+    for (_, line) in long {
         let is_free = |v: VertexId| {
             let is_apart = |u: &VertexId| mesh.position(*u).distance(mesh.position(v)) > ROOM * h;
             kept.contains(&v) || kept.iter().all(is_apart)
@@ -73,13 +71,17 @@ pub fn whole_lines(
     sharp: &HalfedgeMap<bool>,
     h: f64,
 ) -> Vec<Line> {
-    let mut all: Vec<(f64, Vec<HalfedgeId>)> = chains(mesh, field, sharp)
-        .into_iter()
-        .map(|line| (length(mesh, &line), line))
-        .collect();
-    all.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let all = longest_first(mesh, chains(mesh, field, sharp));
     let pieces = all.into_iter().flat_map(|(_, line)| pieces(mesh, line, h));
     pieces.map(|halfedges| Line::new(mesh, halfedges)).collect()
+}
+
+/// Lines with their lengths, longest first; of equally long ones the order stays.
+fn longest_first(mesh: &TriangleMesh, lines: Vec<Vec<HalfedgeId>>) -> Vec<(f64, Vec<HalfedgeId>)> {
+    let measured = lines.into_iter().map(|line| (length(mesh, &line), line));
+    let mut all: Vec<_> = measured.collect();
+    all.sort_by(|a, b| b.0.total_cmp(&a.0));
+    all
 }
 
 /// Whether enough of the sharp edges lie on the lines of so much length in all: else they are the
