@@ -76,7 +76,9 @@ def test_islands_of_split_vertices_are_not_smeared(open_fixture: Open) -> None:
     coordinates = quads(mesh)[1]
     assert np.ptp(coordinates[..., 0], axis=1).max() < 1
     assert area(coordinates).sum() == pytest.approx(2 * np.pi, rel=0.03)
-    assert share_off(mesh) < 0.02
+    # Quads on the seam have their map from one side of it: they are off at most half a quad deep.
+    half = np.sqrt(area(quads(mesh)[0]).mean()) / 2
+    assert share_off(mesh) < half * 2 * np.pi / (4 * np.pi)
 
 
 def test_borders_of_islands_can_be_followed(open_fixture: Open) -> None:
