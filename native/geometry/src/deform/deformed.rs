@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::sheet::Sheet;
 use super::{Deformed, Error, Report, separate, untangle};
-use crate::mesh::{PolygonMesh, VertexId};
-use crate::progress::Progress;
+use crate::mesh::{Id, PolygonMesh, VertexId};
+use crate::progress::{Cancelled, Progress};
 use crate::sphere_map::check_cover;
 
 impl Deformed {
@@ -48,6 +48,50 @@ impl Deformed {
         self.mesh = self.mesh.with_positions(positions);
         self.report.n_inverted = untangle::n_inverted(&self.mesh);
         self
+    }
+
+    /// Some of its faces alone, with the vertices that they use; what is inverted or crosses is counted
+    /// anew. They no longer cover the sphere.
+    ///
+    /// # Errors
+    /// When cancelled.
+    pub fn only(&self, is_wanted: &[bool], progress: &Progress) -> Result<Self, Cancelled> {
+        let faces = self.mesh.faces().zip(is_wanted);
+        let faces: Vec<&[VertexId]> = faces.filter(|(_, is)| **is).map(|(face, _)| face).collect();
+        let mut names = vec![None; self.mesh.n_vertices()];
+        let mut left = Vec::new();
+        for v in faces.iter().copied().flatten() {
+            names[v.index()].get_or_insert_with(|| {
+                left.push(*v);
+                left.len() as u32 - 1
+            });
+        }
+        let named = |v: VertexId| names[v.index()];
+        let faces = faces.iter().map(|face| face.iter().filter_map(|&v| named(v)).collect());
+        let faces: Vec<Vec<u32>> = faces.collect();
+        let edges = |edges: &[[VertexId; 2]]| -> Vec<[VertexId; 2]> {
+            let both = |[a, b]: &[VertexId; 2]| Some([VertexId(named(*a)?), VertexId(named(*b)?)]);
+            let mut edges: Vec<_> = edges.iter().filter_map(both).collect();
+            edges.iter_mut().for_each(|ends| ends.sort_unstable());
+            edges.sort_unstable();
+            edges
+        };
+        let positions = left.iter().map(|&v| self.mesh.position(v)).collect();
+        let mesh = PolygonMesh::from_faces(positions, &faces);
+        let mesh = mesh.expect("some faces of a mesh are one");
+        let n_crossing = separate::n_crossing(&mesh, progress)?;
+        let report = Report {
+            n_crossing_left: n_crossing,
+            n_inverted: untangle::n_inverted(&mesh),
+            ..self.report
+        };
+        Ok(Self {
+            sphere: left.iter().map(|v| self.sphere[v.index()]).collect(),
+            features: edges(&self.features),
+            led: edges(&self.led),
+            mesh,
+            report,
+        })
     }
 
     /// What a sheet has become.

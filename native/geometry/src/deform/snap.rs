@@ -157,7 +157,10 @@ impl Plan {
         let reach = (GRASP * self.edge).powi(2);
         let fits = |face: FaceId| {
             let v = VertexId(face.0);
-            !self.taken[v] && sheet.point(v).normal.dot(normal) > 0.0
+            let own = sheet.point(v).normal;
+            // Where two sides lie on each other their rim looks no way.
+            let looks_away = own != DVec3::ZERO && normal != DVec3::ZERO && own.dot(normal) <= 0.0;
+            !self.taken[v] && !looks_away
         };
         let vertex = VertexId(self.vertices.closest_where(position, reach, fits)?.face.0);
         self.taken[vertex] = true;

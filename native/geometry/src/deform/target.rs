@@ -78,6 +78,11 @@ impl Target {
         self.normals[face]
     }
 
+    /// Whether a face looks the way that a vector points.
+    pub fn looks_along(&self, face: FaceId, way: DVec3) -> bool {
+        self.normals[face].dot(way) > 0.0
+    }
+
     /// The closest point whose face agrees with a normal, up to a distance.
     ///
     /// Faces that look another way belong to another sheet of the surface: the far side of a thin

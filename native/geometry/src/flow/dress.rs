@@ -22,8 +22,8 @@ pub(super) struct Dressed {
     pub wish: HalfedgeMap<DVec2>,
     /// The edges that quads should lie along but for marked ones and those in the plane.
     sharp: HalfedgeMap<bool>,
-    /// What to keep to: of a solid all lines; else all, if the sharp ones are clear; those of marked edges alone, if
-    /// there are any; no lines.
+    /// What to keep to: of a solid all lines; else all, if the sharp ones are clear; those of marked
+    /// edges alone, if there are any; those alone that have to be met.
     pub plans: Vec<Plan>,
 }
 
@@ -57,9 +57,10 @@ pub(super) fn dress(
     };
     let all = lines(mesh, guides, (settings.creases, sharp_angle));
     let along = plane(&all);
-    let both = all.iter().zip(guides.marked);
-    let sharp: HalfedgeMap<bool> = both
-        .map(|(&is_line, &is_marked)| is_line && !is_marked)
+    let is_firm = |h| guides.firm.is_some_and(|firm| firm[h]);
+    let sharp: HalfedgeMap<bool> = mesh
+        .halfedge_ids()
+        .map(|h| all[h] && !guides.marked[h] && !is_firm(h))
         .collect();
     let part = progress.part("", 0.0, 0.5);
     let mut field = field::orient_along(mesh, (&pull, &along), &part)?;
@@ -71,9 +72,18 @@ pub(super) fn dress(
     mirror(&mut field);
     tidy(mesh, &mut field, sizes);
     mirror(&mut field);
-    let is_solid = settings.creases == Creases::All;
-    let network = is_solid.then(|| network(mesh, (&all, &along), guides));
-    let network = network.transpose()?;
+    let firm = match settings.creases {
+        Creases::All => Some(all.clone()),
+        Creases::Long => guides.firm.cloned(),
+    };
+    let held = firm.as_ref().map(plane);
+    let network = match (&firm, &held) {
+        (Some(firm), Some(held)) if firm.iter().any(|&is_firm| is_firm) => {
+            Some(Network::new(mesh, held, guides.mirror).ok_or(Error::NoSolid)?)
+        }
+        (Some(_), _) if settings.creases == Creases::All => return Err(Error::NoSolid),
+        _ => None,
+    };
     let h = (total_area(mesh) / settings.n_quads.max(1) as f64).sqrt();
     let lines = creases::lines(mesh, &field, &along, h).into_iter();
     let on_lines = lines.map(|line| line.length_of(mesh, |h| sharp[*h])).sum();
@@ -81,9 +91,11 @@ pub(super) fn dress(
     if creases::are_clear(mesh, &sharp, on_lines) {
         kept.insert(0, &all);
     }
-    match &network {
-        Some(network) => network.settle(&mut field),
-        None => creases::attract(mesh, &mut field, kept[0], sizes),
+    if settings.creases == Creases::Long {
+        creases::attract(mesh, &mut field, kept[0], sizes);
+    }
+    if let Some(network) = &network {
+        network.settle(&mut field);
     }
     mirror(&mut field);
     let part = progress.part("", 0.5, 0.7);
@@ -91,12 +103,13 @@ pub(super) fn dress(
     mirror(&mut field);
     let wish = wish(mesh, &field, sizes, &progress.part("", 0.7, 1.0))?;
     let plan = |lines| planned(guides.mirror, &field, lines);
-    let plans = if network.is_some() {
+    let plans = if settings.creases == Creases::All {
         vec![plan(creases::whole_lines(mesh, &field, &along, h)).firm()]
     } else {
         let kept = kept.into_iter().filter(|kept| kept.iter().any(|&is| is));
-        let lines = kept.map(|kept| creases::lines(mesh, &field, &plane(kept), h));
-        lines.chain([Vec::new()]).map(plan).collect()
+        let lines = kept.map(|kept| lines_of((mesh, &field), (&plane(kept), firm.as_ref()), h));
+        let none = held.as_ref().map(|held| lines_of((mesh, &field), (held, firm.as_ref()), h));
+        lines.chain([none.unwrap_or_default()]).map(plan).collect()
     };
     Ok(Dressed {
         field,
@@ -118,15 +131,20 @@ fn lines(
     }
 }
 
-/// The network of all lines, and of the edges in the plane where there is one.
-fn network<'a>(
-    mesh: &'a TriangleMesh,
-    (all, along): (&HalfedgeMap<bool>, &'a HalfedgeMap<bool>),
-    guides: Guides<'a>,
-) -> Result<Network<'a>, Error> {
-    let has_lines = all.iter().any(|&is_line| is_line);
-    let network = has_lines.then(|| Network::new(mesh, along, guides.mirror));
-    network.flatten().ok_or(Error::NoSolid)
+/// Lines along some edges, of which those that have to be met are taken whole.
+fn lines_of(
+    (mesh, field): (&TriangleMesh, &OrientationField),
+    (along, firm): (&HalfedgeMap<bool>, Option<&HalfedgeMap<bool>>),
+    h: f64,
+) -> Vec<Line> {
+    let Some(is_firm) = firm else {
+        return creases::lines(mesh, field, along, h);
+    };
+    let along: HalfedgeMap<bool> = either(along, is_firm);
+    let whole = creases::whole_lines(mesh, field, &along, h);
+    let mut lines = creases::firm_lines(whole, is_firm);
+    lines.extend(creases::lines_beside(&lines, (mesh, field, &along), h));
+    lines
 }
 
 /// What to keep to with some lines of sharp edges.
@@ -137,7 +155,6 @@ fn planned(mirror: Option<&Doubled>, field: &OrientationField, beside: Vec<Line>
             plane: Vec::new(),
             beside,
             pairs: Vec::new(),
-            is_firm: false,
         },
     }
 }

@@ -7,11 +7,10 @@ use glam::DVec3;
 use super::creases::{self, Line};
 use super::mirror::{Plan, images};
 use super::place::{Placed, place};
-use super::quads::Error;
+use super::quads::{Error, Guides};
 use super::search::{self, Quantised};
 use crate::measure::Seam;
 use crate::mesh::VertexId;
-use crate::mirror::Doubled;
 use crate::progress::Progress;
 use crate::sphere_map::SphereMap;
 
@@ -22,6 +21,8 @@ pub(super) struct Laid {
     pub report: search::Report,
     pub placed: Placed,
     pub seams: Vec<Seam>,
+    /// The edges along what the guides say has to be met.
+    pub firm: Vec<[VertexId; 2]>,
     /// Which lines of the plan have a seam.
     pub is_met: Vec<bool>,
     pub images: Option<Vec<VertexId>>,
@@ -30,7 +31,7 @@ pub(super) struct Laid {
 /// Lays a grid on the surface along the lines of a plan.
 pub(super) fn lay(
     map: &SphereMap,
-    mirror: Option<&Doubled>,
+    guides: Guides<'_>,
     (whole, plan): (Quantised, &Plan),
     progress: &Progress,
 ) -> Result<Laid, Error> {
@@ -41,11 +42,16 @@ pub(super) fn lay(
     let laid = (&grid.quads[..], &placed.positions[..]);
     let lines: Vec<&Line> = plan.lines().collect();
     let seams = creases::seams(map.mesh(), &lines, &whole.complex, laid);
-    let images = match mirror {
+    let images = match guides.mirror {
         Some(_) => Some(images(quads, &seams[..plan.plane.len()]).ok_or(Error::Uneven)?),
         None => None,
     };
     let is_met = seams.iter().map(Option::is_some).collect();
+    let is_firm = |line: &Line| guides.firm.is_some_and(|firm| firm[line.halfedges[0]]);
+    let firm = lines.iter().zip(&seams).filter(|(line, _)| is_firm(line));
+    let firm = firm.filter_map(|(_, seam)| seam.as_ref());
+    let firm = firm.flat_map(|seam| seam.vertices.windows(2).map(|pair| [pair[0], pair[1]]));
+    let firm = firm.collect();
     let seams: Vec<Seam> = seams.into_iter().flatten().collect();
     if !seams.is_empty() {
         let goals: BTreeMap<u32, DVec3> = seams.iter().flat_map(creases::goals).collect();
@@ -58,6 +64,7 @@ pub(super) fn lay(
         report: whole.report,
         placed,
         seams,
+        firm,
         is_met,
         images,
     })

@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 use serde::Serialize;
 use thiserror::Error;
 
+use super::complex::FirmLine;
 use super::cones::keep_cones;
 use super::conformal::{FlattenError, flatten};
 use super::dress::{Dressed, dress};
@@ -31,6 +32,8 @@ pub struct Guides<'a> {
     pub lines: &'a HalfedgeMap<bool>,
     /// Those of them that somebody marked: they stay lines where sharp edges are not clear.
     pub marked: &'a HalfedgeMap<bool>,
+    /// Those of them that have to be met, such as borders: closed lines, or ones that end in others.
+    pub firm: Option<&'a HalfedgeMap<bool>>,
     /// That the surface is its own image in a plane, and the quads shall be.
     pub mirror: Option<&'a Doubled>,
 }
@@ -48,6 +51,8 @@ pub struct Flow {
     pub sizes: FaceMap<f64>,
     /// Vertices that belong on the surface's sharp edges, and where.
     pub seams: Vec<Seam>,
+    /// The edges of the quads along what had to be met.
+    pub firm: Vec<[VertexId; 2]>,
     /// The image of every vertex, where the quads are their own image in a plane.
     pub images: Option<Vec<VertexId>>,
     /// How they were found.
@@ -213,6 +218,7 @@ pub fn flow(
         sizes,
         images: laid.images,
         seams: laid.seams,
+        firm: laid.firm,
         report,
     })
 }
@@ -231,13 +237,15 @@ fn search(
     let lay_plan = |plan: &Plan, progress: &Progress| {
         let [part, ends] = [(0.0, 0.9), (0.9, 1.0)].map(|(from, to)| progress.part("", from, to));
         let whole = whole(mesh, worn, plan, settings, &part)?;
-        lay(map, guides.mirror, (whole, plan), &ends)
+        lay(map, guides, (whole, plan), &ends)
     };
     let mut from = 0.2;
     for plan in lined {
         let to = f64::midpoint(from, 1.0);
         match lay_plan(plan, &progress.part("", from, to)) {
-            Ok(laid) if dressed.are_met(mesh, plan, &laid.is_met) => return Ok(laid),
+            Ok(laid) if dressed.are_met(mesh, plan, &laid.is_met) && unmet(plan, &laid) == 0 => {
+                return Ok(laid);
+            }
             // Fewer fixed points leave more ways out.
             Ok(_)
             | Err(
@@ -248,13 +256,19 @@ fn search(
         from = to;
     }
     let laid = lay_plan(last, &progress.part("", from, 1.0))?;
-    match laid.is_met.iter().filter(|is_met| **is_met).count() {
-        n_met if last.is_firm && n_met < laid.is_met.len() => Err(Error::Creases {
-            n_met,
+    match unmet(last, &laid) {
+        0 => Ok(laid),
+        n_unmet => Err(Error::Creases {
+            n_met: laid.is_met.len() - n_unmet,
             n_lines: laid.is_met.len(),
         }),
-        _ => Ok(laid),
     }
+}
+
+/// How many lines of a plan have to be met and are not.
+fn unmet(plan: &Plan, laid: &Laid) -> usize {
+    let lines = plan.lines().zip(&laid.is_met);
+    lines.filter(|(line, is_met)| line.is_firm && !**is_met).count()
 }
 
 /// The grid of whole periods, with the ends of lines among its vertices.
@@ -275,12 +289,17 @@ fn whole(
     let mut complex = keep_cones(complex, &is_wanted, &progress.part("", 0.2, 0.25))?;
     let part = progress.part("", 0.25, 1.0);
     let mut search = settings.search;
-    if plan.is_firm {
+    if plan.is_firm() {
         search.weights.count = COUNT_OF_SOLIDS;
-        complex.chains.firm = plan.lines().map(|line| line.kept_ends(&complex)).collect();
+        let firm = plan.lines().enumerate().filter(|(_, line)| line.is_firm);
+        let firm = firm.map(|(i, line)| FirmLine {
+            line: i,
+            ends: line.kept_ends(&complex),
+        });
+        complex.chains.firm = firm.collect();
     }
     let whole = quantise(complex, settings.n_quads, &search, &part)?;
-    check(&whole, (settings, plan.is_firm))?;
+    check(&whole, (settings, plan.is_firm()))?;
     Ok(whole)
 }
 
@@ -320,6 +339,7 @@ mod tests {
         Guides {
             lines: marked,
             marked,
+            firm: None,
             mirror: None,
         }
     }

@@ -8,13 +8,16 @@ use crate::groups::Groups;
 use crate::mesh::{FaceId, HalfedgeId, Id, PolygonMesh, TriangleMesh, VertexId};
 
 /// All parts in the order of their first faces.
+///
+/// Without `can_open` a part with borders has a reason not to be done.
 pub fn parts(
-    (mesh, settings): (&PolygonMesh, &Settings),
+    (mesh, settings, can_open): (&PolygonMesh, &Settings, bool),
     apart: &Apart,
     (component, n): (&[u32], usize),
 ) -> Vec<Part> {
     let told = Told {
         mesh,
+        can_open,
         reach: settings
             .weld
             .filter(|_| apart.is_open())
@@ -104,6 +107,8 @@ impl Surface {
 /// Puts what was found in words.
 struct Told<'a> {
     mesh: &'a PolygonMesh,
+    /// Whether a part with borders can be done.
+    can_open: bool,
     /// Up to which gap borders were welded, where they were.
     reach: Option<f64>,
 }
@@ -111,7 +116,10 @@ struct Told<'a> {
 impl Told<'_> {
     fn of_surface(&self, surface: &Surface) -> Vec<Reason> {
         let faces = &surface.faces;
-        let border = self.border(faces, surface.n_loops, &surface.border);
+        let border = match self.can_open {
+            true => None,
+            false => self.border(faces, surface.n_loops, &surface.border),
+        };
         let flat = self.flat(surface);
         let genus = surface.genus();
         let handles = (genus != 0).then(|| {

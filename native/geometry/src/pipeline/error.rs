@@ -8,7 +8,7 @@ use super::settings::{Kind, MAX_FACES, MIN_FACES, Primitive};
 use super::warning::{Warning, grave};
 use crate::mesh::VertexId;
 use crate::progress::Cancelled;
-use crate::{clean, decimate, deform, embed, flow, pair, sphere};
+use crate::{clean, close, decimate, deform, embed, flow, pair, sphere};
 
 /// Why a run ends without a mesh; nothing was changed.
 #[derive(Debug, Error)]
@@ -77,6 +77,12 @@ pub enum Error {
         /// How many faces.
         n_faces: usize,
     },
+    /// A part was closed and could not be opened again.
+    #[error("the part could not be opened again: {reason}")]
+    Unopened {
+        /// Why not.
+        reason: String,
+    },
     /// A size is out of range.
     #[error("the {name} is {value}; it goes from 0 to {most}")]
     SizeOutOfRange {
@@ -109,6 +115,9 @@ pub enum Error {
     /// The mesh cannot be mended.
     #[error(transparent)]
     Clean(clean::Error),
+    /// Borders could not be closed.
+    #[error(transparent)]
+    Close(close::Error),
     /// Decimation failed.
     #[error(transparent)]
     Decimate(decimate::Error),
@@ -161,6 +170,7 @@ macro_rules! lift {
 
 lift!(
     clean::Error => Clean,
+    close::Error => Close,
     decimate::Error => Decimate,
     decimate::CollapseError => Collapse,
     embed::Error => Embed,

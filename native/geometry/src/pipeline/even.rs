@@ -41,6 +41,12 @@ impl Marked {
         self.0.is_empty()
     }
 
+    /// They, ready to be asked for the closest point.
+    pub fn tree(&self, progress: &Progress<'_>) -> Result<Bvh, Cancelled> {
+        let segments: Vec<_> = self.0.iter().map(|&[a, b]| [a, b, b]).collect();
+        Bvh::build(&segments, progress)
+    }
+
     /// Those of some edges of a mesh that lie along them.
     pub fn met(
         &self,
@@ -58,8 +64,7 @@ impl Marked {
         met: &[[VertexId; 2]],
         progress: &Progress<'_>,
     ) -> Result<TriangleMesh, Cancelled> {
-        let segments: Vec<_> = self.0.iter().map(|&[a, b]| [a, b, b]).collect();
-        let tree = Bvh::build(&segments, progress)?;
+        let tree = self.tree(progress)?;
         let mut positions = mesh.positions().to_vec();
         for &vertex in met.iter().flatten() {
             let at = |v: VertexId| positions[v.index()];
@@ -103,6 +108,8 @@ pub struct Even {
     pub lines: HalfedgeMap<bool>,
     /// Those of them that lie along marked ones.
     pub marked: HalfedgeMap<bool>,
+    /// Those of them that lie along borders, where there are any.
+    pub border: Option<HalfedgeMap<bool>>,
     pub sphere: sphere::Report,
 }
 
@@ -114,6 +121,8 @@ pub struct For<'a> {
     pub seed: u64,
     /// Lines of the map's mesh that have edges of it all along.
     pub lines: &'a [FeatureLine],
+    /// The borders of a part that was closed.
+    pub border: Option<&'a Marked>,
 }
 
 /// A solid has few edges: of more lines, as of the facets of a model, no grid keeps to all.
@@ -121,9 +130,17 @@ const MOST_LINES: usize = 100;
 /// The share of a solid's edges that may end loosely.
 const MOST_LOOSE: f64 = 0.02;
 
-/// The sharp edges of a mesh as lines, if they are those of a solid.
-pub fn solid(mesh: &TriangleMesh, sharp_angle: Option<f64>) -> Option<Vec<FeatureLine>> {
+/// The sharp edges of a mesh and its borders as lines, if they are those of a solid.
+pub fn solid(
+    mesh: &TriangleMesh,
+    sharp_angle: Option<f64>,
+    border: Option<&HalfedgeMap<bool>>,
+) -> Option<Vec<FeatureLine>> {
     let sharp = sharp_edges(mesh, sharp_angle?);
+    let sharp = match border {
+        Some(border) => sharp.iter().zip(border).map(|(a, b)| a | b).collect(),
+        None => sharp,
+    };
     if loose_share(mesh, &sharp) > MOST_LOOSE {
         return None;
     }
@@ -168,11 +185,17 @@ pub fn even(
     let mut lines = [&deformed.features[..], &marked].concat();
     lines.sort_unstable();
     let [lines, marked] = [lines, marked].map(|edges| either_side(&mesh, &edges));
+    let border = quads.border.map(|border| {
+        let met = border.met((&deformed.mesh, &deformed.led), progress)?;
+        Ok::<_, Cancelled>(either_side(&mesh, &met))
+    });
+    let border = border.transpose()?;
     let sphere = VertexMap::from_vec(deformed.sphere);
     Ok(Even {
         map: SphereMap::prove(mesh, sphere).map_err(embed::Error::from)?,
         lines,
         marked,
+        border,
         sphere: report,
     })
 }

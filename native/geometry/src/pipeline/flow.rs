@@ -6,6 +6,7 @@ use super::clock::Clock;
 use super::crosses;
 use super::even::{For, Marked, even};
 use super::flowed::{Flowed, FlowedPart, better};
+use super::open::Opening;
 use super::paired::told;
 use super::probe::n_missed;
 use super::{density, mirror, rods};
@@ -37,9 +38,16 @@ pub struct Asked<'a> {
     pub marked: &'a HalfedgeMap<bool>,
     /// The axis across the plane of symmetry, which goes through the origin.
     pub axis: Option<usize>,
+    /// What is real of a part that was closed, and where its borders lie.
+    pub opening: Option<&'a Opening>,
 }
 
 impl Asked<'_> {
+    /// What the quads are held against: the part as it came, open or not.
+    pub fn bare<'b>(&'b self, target: &'b Target) -> &'b Target {
+        self.opening.map_or(target, |opening| &opening.bare)
+    }
+
     /// How many crosses of all that are asked for fall to the part, by its quads.
     pub fn n_crosses(&self) -> usize {
         let settings = self.settings;
@@ -54,6 +62,8 @@ struct Ground<'a> {
     lines: HalfedgeMap<bool>,
     /// Those that lie along marked ones.
     marked: HalfedgeMap<bool>,
+    /// Those that lie along borders of a part that was closed.
+    border: Option<HalfedgeMap<bool>>,
     /// Whose image is whose, where the even surface is its own image.
     doubled: Option<Doubled>,
     sphere: sphere::Report,
@@ -63,6 +73,14 @@ struct Ground<'a> {
     asked: Asked<'a>,
     style: flow::Settings,
 }
+
+/// An even surface and its edges along lines, along marked ones, and along borders.
+type Wearing = (
+    SphereMap,
+    HalfedgeMap<bool>,
+    HalfedgeMap<bool>,
+    Option<HalfedgeMap<bool>>,
+);
 
 /// Why an attempt gave no quads.
 struct Refusal {
@@ -93,11 +111,13 @@ pub fn along(
     if !lines.is_empty() {
         style.creases = flow::Creases::All;
     }
+    let borders = asked.opening.map_or(&[][..], |opening| &opening.lines);
     let quads = For {
         n_quads,
         sizes: &style.sizes,
         seed: settings.seed,
-        lines,
+        lines: if lines.is_empty() { borders } else { lines },
+        border: asked.opening.map(|opening| &opening.edges),
     };
     let even = clock.step("sphere", || {
         told(even(map, (target, &wanted), &quads, &part))
@@ -110,6 +130,7 @@ pub fn along(
         even: even.map,
         lines: even.lines,
         marked: even.marked,
+        border: even.border,
         doubled: None,
         sphere: even.sphere,
         target,
@@ -135,7 +156,7 @@ fn symmetric(
 ) -> Result<Result<FlowedPart, String>, Cancelled> {
     let part = progress.part("sphere", 0.0, 0.05);
     let found = clock.step("sphere", || {
-        let lines = ground.is_solid().then_some(&ground.lines);
+        let lines = ground.keeps_lines().then_some(&ground.lines);
         told(mirror::symmetric((&ground.even, lines), axis, &part))
     })?;
     let mut symmetric = None;
@@ -143,7 +164,7 @@ fn symmetric(
         Ok((even, doubled)) => {
             let usual = ground.doubled(even, doubled);
             let best = ground.best(budget, clock, &progress.part("", 0.05, 0.6))?;
-            (ground.even, ground.lines, ground.marked) = usual;
+            (ground.even, ground.lines, ground.marked, ground.border) = usual;
             ground.doubled = None;
             match best {
                 Ok(best) if best.n_missed == 0 => return Ok(Ok(best)),
@@ -173,14 +194,16 @@ impl Ground<'_> {
         &mut self,
         even: SphereMap,
         doubled: Doubled,
-    ) -> (SphereMap, HalfedgeMap<bool>, HalfedgeMap<bool>) {
+    ) -> Wearing {
         let carried = |lines| doubled.carried(self.even.mesh(), lines);
         let (lines, marked) = (carried(&self.lines), carried(&self.marked));
+        let border = self.border.as_ref().map(carried);
         self.doubled = Some(doubled);
         (
             std::mem::replace(&mut self.even, even),
             std::mem::replace(&mut self.lines, lines),
             std::mem::replace(&mut self.marked, marked),
+            std::mem::replace(&mut self.border, border),
         )
     }
 
@@ -200,7 +223,9 @@ impl Ground<'_> {
         for attempt in all.filter(|attempt| attempt.is_worth_trying(&self.style)) {
             // Without strips nothing is its own image.
             let is_flowing = best.as_ref().is_ok_and(|best| !best.is_last_resort());
-            if attempt.is_last_resort() && (is_flowing || self.doubled.is_some()) {
+            // Nor do lines stay that have to be met.
+            let is_bound = self.doubled.is_some() || self.asked.opening.is_some();
+            if attempt.is_last_resort() && (is_flowing || is_bound) {
                 break;
             }
             // Without too many quads there is nothing to take out.
@@ -224,7 +249,7 @@ impl Ground<'_> {
             from = to;
             best = better(best, found);
             let is_failing = best.as_ref().map_or(true, |best| best.n_failed() > 0);
-            if attempt == Attempt::Usual && is_failing {
+            if attempt == Attempt::Usual && is_failing && self.asked.opening.is_none() {
                 best = better(best, self.rings(clock, &progress.part("", from, from))?);
             }
             let is_done = |best: &FlowedPart| {
@@ -286,7 +311,9 @@ impl Ground<'_> {
         };
         let settings = deform::Settings {
             evenness: self.evenness(),
-            is_on_lines: self.is_solid(),
+            is_on_lines: self.keeps_lines(),
+            // What is virtual may lie on what is real.
+            separates: self.asked.opening.is_none(),
             ..deform::Settings::default()
         };
         let fit = || deform::deform_flow(&self.even, flowing, self.target, &settings, &part);
@@ -302,10 +329,18 @@ impl Ground<'_> {
             Ok(deformed) => deformed,
             Err(reason) => return Ok(Err(Refusal { reason, is_over })),
         };
+        let opened = match self.asked.opening {
+            Some(opening) => opening.reopened(&deformed, (&found.firm, self.target), progress)?,
+            None => Ok(deformed),
+        };
+        let deformed = match opened {
+            Ok(deformed) => deformed,
+            Err(reason) => return Ok(Err(Refusal { reason, is_over })),
+        };
         let marks = (&deformed.mesh, &deformed.features[..]);
         Ok(Ok(FlowedPart {
             mirrored: self.doubled.as_ref().map(|_| Ok(())),
-            n_missed: n_missed(&deformed.mesh, self.target),
+            n_missed: n_missed(&deformed.mesh, self.asked.bare(self.target)),
             lost: self.wanted.lost(marks, progress)?,
             deformed,
             sphere: self.sphere.clone(),
@@ -317,6 +352,11 @@ impl Ground<'_> {
                 cover: covered.report,
             },
         }))
+    }
+
+    /// Whether there are lines that have to be met.
+    fn keeps_lines(&self) -> bool {
+        self.is_solid() || self.asked.opening.is_some()
     }
 
     /// Whether all sharp edges are followed.
@@ -341,6 +381,7 @@ impl Ground<'_> {
         let guides = flow::Guides {
             lines: &self.lines,
             marked: &self.marked,
+            firm: self.border.as_ref(),
             mirror: self.doubled.as_ref(),
         };
         let found = flow::flow(&self.even, guides, settings, &progress.part("", 0.0, 0.95))?;

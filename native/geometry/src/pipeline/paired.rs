@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::clock::Clock;
 use super::even::{either_side, triangles};
-use super::part::{Wanted, embed_mesh};
+use super::part::{Ground, Wanted, embed_mesh};
 use super::probe::Halves;
 use crate::deform::{self, Deformed, Target};
 use crate::mesh::VertexMap;
@@ -90,7 +90,7 @@ impl Laid {
 /// Quads of paired triangles, or why there are none.
 pub fn paired(
     wanted: &Wanted<'_>,
-    (map, target): (&SphereMap, &Target),
+    (map, ground): (&SphereMap, Ground<'_>),
     clock: &mut Clock,
     progress: &Progress<'_>,
 ) -> Result<Result<Laid, String>, Cancelled> {
@@ -99,12 +99,13 @@ pub fn paired(
         return Ok(Err(reason));
     }
     let part = progress.part("", 0.0, 0.5);
-    let quarters = told(quarters(wanted, (map, target), clock, &part))?;
-    if quarters.as_ref().is_ok_and(Laid::is_good) {
+    let quarters = told(quarters(wanted, (map, ground), clock, &part))?;
+    // The part's own triangles have no other borders than those that virtual ones have.
+    if quarters.as_ref().is_ok_and(Laid::is_good) || ground.opening.is_some() {
         return Ok(quarters);
     }
     let part = progress.part("", 0.5, 1.0);
-    let own = told(own(wanted, target, clock, &part))?;
+    let own = told(own(wanted, ground, clock, &part))?;
     Ok(match (quarters, own) {
         (Ok(quarters), Ok(own)) if quarters.is_worse_than(&own) => Ok(own),
         (quarters, own) => quarters.or(own),
@@ -147,10 +148,12 @@ fn counted(
 /// Even triangles, paired and cut in four.
 fn quarters(
     wanted: &Wanted<'_>,
-    (map, target): (&SphereMap, &Target),
+    (map, ground): (&SphereMap, Ground<'_>),
     clock: &mut Clock,
     progress: &Progress<'_>,
 ) -> Result<Laid, pipeline::Error> {
+    let lines = ground.opening.map_or(&[][..], |opening| &opening.lines);
+    let density = VertexMap::filled(map.mesh().n_vertices(), 1.0);
     let mut make = |n_faces: usize, progress: &Progress<'_>| {
         let settings = sphere::Settings {
             n_faces,
@@ -158,15 +161,15 @@ fn quarters(
             ..sphere::Settings::default()
         };
         let part = progress.part("sphere", 0.0, 0.5);
-        let Adaptive { primitive, report } =
-            clock.step("sphere", || sphere::adaptive(map, &settings, &part))?;
+        let sized = || sphere::sized(map, (&density, lines), &settings, &part);
+        let Adaptive { primitive, report } = clock.step("sphere", sized)?;
         let part = progress.part("deform", 0.5, 0.8);
         let settings = deform::Settings {
             separates: false,
-            ..deform::Settings::default()
+            ..ground.deform()
         };
         let even = clock.step("deform", || {
-            deform::deform(map, &primitive, target, &settings, &part)
+            deform::deform(map, &primitive, ground.target, &settings, &part)
         })?;
         let mesh = triangles(&even.mesh);
         let kept = either_side(&mesh, &even.features);
@@ -183,20 +186,20 @@ fn quarters(
     let part = progress.part("", 0.0, 0.7);
     let mut pairs = counted((wanted.n_faces, 4), &mut make, &part)?;
     pairs.paired = pair::split(&pairs.paired);
-    pairs.lay(target, clock, &progress.part("deform", 0.7, 1.0))
+    pairs.lay(ground, clock, &progress.part("deform", 0.7, 1.0))
 }
 
 /// The part's own triangles, more or fewer, paired.
 fn own(
     wanted: &Wanted<'_>,
-    target: &Target,
+    ground: Ground<'_>,
     clock: &mut Clock,
     progress: &Progress<'_>,
 ) -> Result<Laid, pipeline::Error> {
     let mut make = |n_faces: usize, progress: &Progress<'_>| {
         let part = progress.part("decimate", 0.0, 0.3);
         let mesh = clock.step("decimate", || {
-            let mesh = target.mesh();
+            let mesh = ground.target.mesh();
             if mesh.n_faces() > n_faces {
                 let settings = decimate::Settings { n_faces };
                 return Ok(decimate::simplify(mesh, &settings, &part)?.mesh);
@@ -216,14 +219,14 @@ fn own(
     };
     let part = progress.part("", 0.0, 0.7);
     let pairs = counted((wanted.n_faces, 1), &mut make, &part)?;
-    pairs.lay(target, clock, &progress.part("deform", 0.7, 1.0))
+    pairs.lay(ground, clock, &progress.part("deform", 0.7, 1.0))
 }
 
 impl Pairs {
     /// Lays them on the target.
     fn lay(
         self,
-        target: &Target,
+        ground: Ground<'_>,
         clock: &mut Clock,
         progress: &Progress<'_>,
     ) -> Result<Laid, pipeline::Error> {
@@ -236,13 +239,15 @@ impl Pairs {
             } else {
                 0
             },
-            ..usual
+            ..ground.deform()
         };
         let quads = (&self.paired.quads, &self.paired.kept[..]);
         let deformed = clock.step("deform", || {
-            deform::lay(&self.map, quads, target, &settings, progress)
+            deform::lay(&self.map, quads, ground.target, &settings, progress)
         })?;
-        Ok(Laid::new(deformed, self.report, target))
+        let deformed = ground.opened(deformed, progress)?;
+        let deformed = deformed.map_err(|reason| pipeline::Error::Unopened { reason })?;
+        Ok(Laid::new(deformed, self.report, ground.bare()))
     }
 }
 

@@ -11,12 +11,15 @@ use super::flow::Asked;
 use super::flowed::{Flowed, FlowedPart};
 use super::marks::Marks;
 use super::mirror::{self, Faced, Plane, Role, face};
+use super::open::{Closing, Opening};
 use super::paired::{Instead, Laid, paired};
 use super::report::{Mirrored, PartReport, Reduced};
 use super::settings::{Kind, Primitive, Settings};
 use super::{Error, ways};
+use crate::deform::Deformed;
 use crate::embed::{Embedded, OffsetPredictor};
 use crate::hierarchy::CollapseHierarchy;
+use crate::measure::FeatureLine;
 use crate::mesh::{HalfedgeMap, PolygonMesh, TriangleMesh, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
 use crate::sphere::Adaptive;
@@ -28,6 +31,9 @@ use crate::{decimate, deform, embed, measure, sphere};
 const MAP_VERTICES_PER_VERTEX: f64 = 2.0;
 /// Fewer vertices than this are not worth saving.
 const LEAST_MAP_VERTICES: usize = 3_000;
+
+/// A part with borders is not made its own image.
+const OPEN_REASON: &str = "it has borders and is not its own image in the plane";
 
 /// One part and what is to be made of it.
 pub struct PartJob<'a> {
@@ -61,17 +67,24 @@ pub struct PartResult {
     pub report: PartReport,
 }
 
-/// What faces are made on: the target, its marked edges, the density asked for there, and the axis
-/// across the plane of symmetry.
-type Ground<'a> = (
-    &'a deform::Target,
-    &'a HalfedgeMap<bool>,
-    Option<&'a VertexMap<f64>>,
-    Option<usize>,
-);
+/// What faces are made on.
+#[derive(Clone, Copy)]
+pub struct Ground<'a> {
+    pub target: &'a deform::Target,
+    /// The target's marked edges.
+    marked: &'a HalfedgeMap<bool>,
+    /// The density asked for there.
+    density: Option<&'a VertexMap<f64>>,
+    /// The axis across the plane of symmetry.
+    axis: Option<usize>,
+    /// What is real of the target, where it was closed.
+    pub opening: Option<&'a Opening>,
+}
 
 struct Reduction {
     mesh: TriangleMesh,
+    /// Its borders, where it was closed.
+    border: Option<HalfedgeMap<bool>>,
     reduced: Option<Reduced>,
     report: Option<decimate::Report>,
 }
@@ -79,7 +92,13 @@ struct Reduction {
 impl PartJob<'_> {
     pub fn run(self, clock: &mut Clock, progress: &Progress<'_>) -> Result<PartResult, Error> {
         let Self { part, wanted } = self;
+        let n_asked = wanted.n_faces;
         let (n_input_faces, area) = (part.n_faces(), measure::total_area(&part));
+        let closing = Closing::new(&part, wanted.settings, progress)?;
+        let (part, wanted) = match &closing {
+            Some(closing) => (closing.mesh().clone(), wanted.of_closed(&part, closing)),
+            None => (part, wanted),
+        };
         let (marked, density) = (wanted.marks.on(&part), wanted.density.on(&part));
         let Faced {
             mesh: part,
@@ -87,9 +106,12 @@ impl PartJob<'_> {
             density,
             axis,
             refused,
-        } = face((part, marked, density), wanted.mirror);
+        } = face((part, marked, density), (&wanted.role(closing.as_ref()), wanted.mirror.1));
         let stage = progress.part("decimate", 0.0, 0.2);
-        let reduction = clock.step("decimate", || wanted.reduce((&part, axis), &stage))?;
+        let reduction = clock.step("decimate", || match &closing {
+            Some(closing) => wanted.reduce_open(closing, &stage),
+            None => wanted.reduce((&part, axis), &stage),
+        })?;
         let stage = progress.part("embed", 0.2, 0.5);
         let (hierarchy, embedded) = clock.step("embed", || {
             let hierarchy = collapse(reduction.mesh, &stage)?;
@@ -97,14 +119,28 @@ impl PartJob<'_> {
             Ok::<_, Error>((hierarchy, embedded))
         })?;
         let embedding = embedded.report;
-        let target = clock.step("deform", || wanted.target((part, &marked), progress))?;
+        let border = closing.as_ref().map(Closing::border);
+        let lines = (&marked, border.as_ref());
+        let target = clock.step("deform", || wanted.target((part, lines), progress))?;
+        let opening = match (closing, reduction.border) {
+            (Some(closing), Some(border)) => {
+                Some(closing.opening((&embedded.map, border), progress)?)
+            }
+            _ => None,
+        };
         let stage = progress.part("", 0.5, 1.0);
         let start = (&hierarchy, embedded.map);
-        let ground = (&target, &marked, density.as_ref(), axis);
+        let ground = Ground {
+            target: &target,
+            marked: &marked,
+            density: density.as_ref(),
+            axis,
+            opening: opening.as_ref(),
+        };
         let made = wanted.make(start, ground, clock, &stage)?;
         let report = PartReport {
             n_input_faces,
-            n_asked_faces: wanted.n_faces,
+            n_asked_faces: n_asked,
             n_faces: made.deformed.mesh.n_faces(),
             reduced: reduction.reduced,
             decimate: reduction.report,
@@ -131,31 +167,65 @@ impl Wanted<'_> {
     fn make(
         &self,
         (hierarchy, map): (&CollapseHierarchy, SphereMap),
-        (target, marked, density, axis): Ground<'_>,
+        ground: Ground<'_>,
         clock: &mut Clock,
         progress: &Progress<'_>,
     ) -> Result<Made, Error> {
         let start = (hierarchy, map);
         if self.settings.primitive() != Primitive::Flow {
-            let laid = self.fixed(start, target, clock, progress)?;
-            return Ok(self.made((laid, None), axis));
+            let laid = self.fixed(start, ground, clock, progress)?;
+            return Ok(self.made((laid, None), ground.axis));
         }
         let wanted = Asked {
             n_quads: self.n_faces,
             settings: self.settings,
-            density,
-            marked,
-            axis,
+            density: ground.density,
+            marked: ground.marked,
+            axis: ground.axis,
+            opening: ground.opening,
         };
         let part = progress.part("", 0.0, 0.9);
-        match ways::flow_part(&start.1, target, wanted, clock, &part)? {
+        match ways::flow_part(&start.1, ground.target, wanted, clock, &part)? {
             Ok(part) => Ok(Made::flowing(part)),
             Err(reason) => {
                 let part = progress.part("", 0.9, 1.0);
-                let (laid, instead) = self.last_resort(start, target, clock, &part)?;
-                Ok(self.made((laid, Some(Flowed::Refused { reason, instead })), axis))
+                let (laid, instead) = self.last_resort(start, ground, clock, &part)?;
+                let flowed = Flowed::Refused { reason, instead };
+                Ok(self.made((laid, Some(flowed)), ground.axis))
             }
         }
+    }
+
+    /// What is to be made of a part that was closed: the faces of what is virtual are made too.
+    fn of_closed(self, open: &TriangleMesh, closing: &Closing) -> Self {
+        let [open, closed] = [open, closing.mesh()].map(|mesh| self.density.amount(mesh));
+        let n_faces = (self.n_faces as f64 * closed / open.max(f64::MIN_POSITIVE)).round();
+        Self {
+            n_faces: (n_faces as usize).max(self.n_faces),
+            ..self
+        }
+    }
+
+    /// What the part is to the plane of symmetry; one with borders has to be its own image already.
+    fn role(&self, closing: Option<&Closing>) -> Role {
+        match self.mirror {
+            (Role::Whole, Some(plane)) if closing.is_some() && !plane.was_symmetric => {
+                Role::Alone(Some(OPEN_REASON.to_owned()))
+            }
+            (role, _) => role.clone(),
+        }
+    }
+
+    /// Brings a part with borders down to the size of the map, and closes it.
+    fn reduce_open(&self, closing: &Closing, progress: &Progress<'_>) -> Result<Reduction, Error> {
+        let small = closing.reduced(self.n_map_faces(), progress)?;
+        let reason = "the part is open, and has to be closed first".to_owned();
+        Ok(Reduction {
+            mesh: small.mesh,
+            border: Some(small.border),
+            reduced: self.reduced.map(|_| Reduced::Refused { reason }),
+            report: small.report,
+        })
     }
 
     /// Faces that do not flow.
@@ -174,23 +244,27 @@ impl Wanted<'_> {
     fn last_resort(
         &self,
         start: (&CollapseHierarchy, SphereMap),
-        target: &deform::Target,
+        ground: Ground<'_>,
         clock: &mut Clock,
         progress: &Progress<'_>,
     ) -> Result<(Laid, Instead), Error> {
         let part = progress.part("", 0.0, 0.6);
-        let pairs = paired(self, (&start.1, target), clock, &part)?;
+        let pairs = match paired(self, (&start.1, ground), clock, &part)? {
+            // The quad sphere has no edges along borders.
+            Err(reason) if ground.opening.is_some() => return Err(Error::Unopened { reason }),
+            pairs => pairs,
+        };
         if let Ok(pairs) = pairs {
-            if pairs.n_inverted() == 0 {
+            if pairs.n_inverted() == 0 || ground.opening.is_some() {
                 return Ok((pairs, Instead::PairedTriangles));
             }
-            return match self.fixed(start, target, clock, &progress.part("", 0.6, 1.0)) {
+            return match self.fixed(start, ground, clock, &progress.part("", 0.6, 1.0)) {
                 Ok(sphere) => Ok(pairs.or_sphere(sphere)),
                 Err(error) if error.is_cancelled() => Err(error),
                 Err(_) => Ok((pairs, Instead::PairedTriangles)),
             };
         }
-        let sphere = self.fixed(start, target, clock, &progress.part("", 0.6, 1.0))?;
+        let sphere = self.fixed(start, ground, clock, &progress.part("", 0.6, 1.0))?;
         Ok((sphere, Instead::QuadSphere))
     }
 
@@ -198,30 +272,39 @@ impl Wanted<'_> {
     fn fixed(
         &self,
         (hierarchy, map): (&CollapseHierarchy, SphereMap),
-        target: &deform::Target,
+        ground: Ground<'_>,
         clock: &mut Clock,
         progress: &Progress<'_>,
     ) -> Result<Laid, Error> {
         let stage = progress.part("sphere", 0.0, 0.5);
-        let placed = clock.step("sphere", || self.place(hierarchy, map, &stage))?;
+        let lines = ground.opening.map_or(&[][..], |opening| &opening.lines);
+        let placed = clock.step("sphere", || self.place(hierarchy, (map, lines), &stage))?;
         let stage = progress.part("deform", 0.5, 1.0);
         let (map, primitive) = (&placed.map, &placed.primitive);
-        let deform =
-            || deform::deform(map, primitive, target, &deform::Settings::default(), &stage);
+        let settings = ground.deform();
+        let deform = || deform::deform(map, primitive, ground.target, &settings, &stage);
         let deformed = clock.step("deform", deform)?;
-        Ok(Laid::new(deformed, placed.report, target))
+        let deformed = ground.opened(deformed, progress)?;
+        let deformed = deformed.map_err(|reason| Error::Unopened { reason })?;
+        Ok(Laid::new(deformed, placed.report, ground.bare()))
     }
 
     /// The part with the edges that the result is to have too.
     fn target(
         &self,
-        (part, marked): (TriangleMesh, &HalfedgeMap<bool>),
+        (part, (marked, border)): (
+            TriangleMesh,
+            (&HalfedgeMap<bool>, Option<&HalfedgeMap<bool>>),
+        ),
         progress: &Progress<'_>,
     ) -> Result<deform::Target, Cancelled> {
         progress.check()?;
         let sharp = measure::sharp_edges(&part, self.settings.sharp_angle.to_radians());
-        let either = sharp.iter().zip(marked.iter()).map(|(a, b)| a | b);
-        deform::Target::with_features(part, &either.collect(), progress)
+        let is_border = |h| border.is_some_and(|border| border[h]);
+        let halfedges = part.halfedge_ids();
+        let either = halfedges.map(|h| sharp[h] || marked[h] || is_border(h));
+        let either = either.collect();
+        deform::Target::with_features(part, &either, progress)
     }
 
     /// Brings the part down to the size of the map.
@@ -243,6 +326,7 @@ impl Wanted<'_> {
         if start.n_faces() <= n_faces {
             return Ok(Reduction {
                 mesh: start.into_owned(),
+                border: None,
                 reduced,
                 report: None,
             });
@@ -251,6 +335,7 @@ impl Wanted<'_> {
         let simplified = decimate::simplify(&start, &settings, progress)?;
         Ok(Reduction {
             mesh: simplified.mesh,
+            border: None,
             reduced,
             report: Some(simplified.report),
         })
@@ -270,7 +355,7 @@ impl Wanted<'_> {
     fn place(
         &self,
         hierarchy: &CollapseHierarchy,
-        map: SphereMap,
+        (map, lines): (SphereMap, &[FeatureLine]),
         progress: &Progress<'_>,
     ) -> Result<Placed, Error> {
         let seed = self.settings.seed;
@@ -282,7 +367,10 @@ impl Wanted<'_> {
                     seed,
                     ..sphere::Settings::default()
                 };
-                let Adaptive { primitive, report } = sphere::adaptive(&map, &settings, progress)?;
+                let density = VertexMap::filled(map.mesh().n_vertices(), 1.0);
+                let wish = (&density, lines);
+                let Adaptive { primitive, report } =
+                    sphere::sized(&map, wish, &settings, progress)?;
                 return Ok(Placed {
                     map,
                     primitive,
@@ -305,6 +393,35 @@ impl Wanted<'_> {
             primitive,
             report: None,
         })
+    }
+}
+
+impl Ground<'_> {
+    /// The part as it came, open or not.
+    pub fn bare(&self) -> &deform::Target {
+        self.opening.map_or(self.target, |opening| &opening.bare)
+    }
+
+    /// How faces are laid on it that do not flow.
+    pub fn deform(&self) -> deform::Settings {
+        deform::Settings {
+            is_on_lines: self.opening.is_some(),
+            separates: self.opening.is_none(),
+            ..deform::Settings::default()
+        }
+    }
+
+    /// Faces that lie on it, those on what is real alone; or why these are not the part.
+    pub fn opened(
+        &self,
+        deformed: Deformed,
+        progress: &Progress<'_>,
+    ) -> Result<Result<Deformed, String>, Cancelled> {
+        let Some(opening) = self.opening else {
+            return Ok(Ok(deformed));
+        };
+        let met = opening.edges.met((&deformed.mesh, &deformed.led), progress)?;
+        opening.reopened(&deformed, (&met, self.target), progress)
     }
 }
 

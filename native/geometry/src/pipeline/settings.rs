@@ -6,7 +6,7 @@ use super::Error;
 use super::mirror::Mirror;
 use super::small::SmallParts;
 use crate::elementary::powf;
-use crate::{clean, flow, score};
+use crate::{clean, close, flow, score};
 
 /// The fewest faces that can be asked for: those of a tetrahedron.
 pub const MIN_FACES: usize = 4;
@@ -74,6 +74,19 @@ impl Primitive {
             Self::Flow | Self::QuadSphere => Kind::Quads,
         }
     }
+}
+
+/// What becomes of borders.
+#[derive(Clone, Copy, PartialEq, Debug, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Borders {
+    /// They stay: lines of edges of the result lie on them.
+    #[default]
+    Keep,
+    /// All are closed for good.
+    Fill,
+    /// Those are whose loops are no longer than so many percent of the whole mesh's diagonal.
+    FillUpTo(f64),
 }
 
 /// How quads flow, each from 0 to 1; the default is what most want.
@@ -156,6 +169,8 @@ pub struct Settings {
     /// Up to which gap borders that lie on each other are welded, as a share of the diagonal; none
     /// welds equal points alone.
     pub weld: Option<f64>,
+    /// What becomes of borders.
+    pub borders: Borders,
     /// Whether a part that cannot be done, and is not merely small, ends the run.
     pub strict: bool,
     /// Where the adaptive primitive's samples start; equal seeds give equal bytes.
@@ -181,6 +196,7 @@ impl Default for Settings {
             small_parts: SmallParts::default(),
             small_size: 0.0,
             weld: Some(clean::WELD),
+            borders: Borders::default(),
             strict: false,
             seed: 0,
             threads: 0,
@@ -210,6 +226,21 @@ impl Settings {
             Kind::Triangles => Primitive::Adaptive,
             Kind::Quads => Primitive::Flow,
         })
+    }
+
+    /// Whether the primitive can have borders: those that are the same for all shapes have none.
+    pub(super) fn can_open(&self) -> bool {
+        matches!(self.primitive(), Primitive::Flow | Primitive::Adaptive)
+    }
+
+    /// How borders are closed, where the diagonal measures 1.
+    pub(super) fn close(&self) -> close::Settings {
+        let fill = match self.borders {
+            Borders::Keep => close::Fill::None,
+            Borders::Fill => close::Fill::All,
+            Borders::FillUpTo(size_pct) => close::Fill::UpTo(size_pct / 100.0),
+        };
+        close::Settings { fill }
     }
 
     /// What the flow of so many quads is asked for.

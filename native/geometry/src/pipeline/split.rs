@@ -51,7 +51,7 @@ impl Parts {
         progress: &Progress<'_>,
     ) -> Result<(Self, Cleaned), Error> {
         let (component, n) = apart.mesh.face_components();
-        let mut parts = diagnosis::parts((input.mesh, settings), &apart, (&component, n));
+        let mut parts = diagnosis::parts((input.mesh, settings, settings.can_open()), &apart, (&component, n));
         progress.check()?;
         if parts.len() > 1 {
             let amounts = amounts(input, &apart.mesh, progress)?;
@@ -70,7 +70,7 @@ impl Parts {
             ..Settings::default()
         };
         let (component, n) = apart.mesh.face_components();
-        let parts = diagnosis::parts((mesh, &settings), &apart, (&component, n));
+        let parts = diagnosis::parts((mesh, &settings, false), &apart, (&component, n));
         let chosen = Self::chosen(mesh, apart, (&component, n), parts, &settings);
         chosen.map(|(_, cleaned)| cleaned)
     }

@@ -26,7 +26,10 @@ pub fn flow_part(
 ) -> Result<Result<FlowedPart, String>, Cancelled> {
     let mut budget = Budget::new(asked.n_quads);
     let part = progress.part("sphere", 0.0, 0.05);
-    let thick = clock.step("sphere", || Thick::new(map, target, asked, &part))?;
+    let thick = match asked.opening {
+        Some(_) => None,
+        None => clock.step("sphere", || Thick::new(map, target, asked, &part))?,
+    };
     let mut from = 0.0;
     if let Some(thick) = thick {
         budget = budget.after(1, 0);
@@ -42,7 +45,7 @@ pub fn flow_part(
         }
         budget = budget.after(0, own.n_attempts);
         from = 0.6;
-    } else if rods::are_clear(target) {
+    } else if asked.opening.is_none() && rods::are_clear(target) {
         let wanted = Marked::new(target.mesh(), asked.marked);
         let found = rods::rings(map, (target, &wanted), asked, (clock, &part))?;
         // Where rings cannot be their own image, quads off the metric may.
@@ -67,7 +70,8 @@ fn flowing(
 ) -> Result<Result<FlowedPart, String>, Cancelled> {
     let (map, target) = surface;
     let style = asked.settings.flow(asked.n_quads);
-    let lines = even::solid(map.mesh(), style.sharp_angle);
+    let border = asked.opening.map(|opening| &opening.small);
+    let lines = even::solid(map.mesh(), style.sharp_angle, border);
     let lines = lines.filter(|_| Marked::new(target.mesh(), asked.marked).is_empty());
     let mut from = 0.0;
     if let Some(lines) = lines {

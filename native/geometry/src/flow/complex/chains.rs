@@ -27,15 +27,23 @@ pub struct Tie {
     pub turns: u8,
 }
 
+/// A line that is put along the nearest axis at any cost and has to be a straight way between its ends.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct FirmLine {
+    /// Which line.
+    pub line: usize,
+    /// The vertices at its ends.
+    pub ends: [u32; 2],
+}
+
 /// Lines as sums over halfedges; none unless a complex was told to follow some.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct Chains {
     n_lines: usize,
     /// Which of the lines are each other's images.
     pub ties: Vec<Tie>,
-    /// Of the first lines the vertices at their ends, where they are put along the nearest axis at any
-    /// cost and have to be straight ways between these.
-    pub firm: Vec<[u32; 2]>,
+    /// The lines that have to be met, in order.
+    pub firm: Vec<FirmLine>,
     /// The terms of each halfedge in the order of the lines; an edge's may be on either side.
     terms: Vec<Vec<Term>>,
 }
@@ -44,6 +52,11 @@ impl Chains {
     /// How many lines there are.
     pub fn n_lines(&self) -> usize {
         self.n_lines
+    }
+
+    /// Whether a line has to be met.
+    pub fn is_firm(&self, line: usize) -> bool {
+        self.firm.binary_search_by_key(&line, |firm| firm.line).is_ok()
     }
 
     /// How many terms there are in all, each as often as its factor says.

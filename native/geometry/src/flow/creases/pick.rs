@@ -23,6 +23,8 @@ pub struct Line {
     pub halfedges: Vec<HalfedgeId>,
     /// The first and the last vertex; one and the same if the line is closed.
     pub ends: [VertexId; 2],
+    /// Whether it has to be met.
+    pub is_firm: bool,
 }
 
 /// The lines of sharp edges that are long enough for quads of edge length `h`, longest first.
@@ -35,12 +37,24 @@ pub fn lines(
     sharp: &HalfedgeMap<bool>,
     h: f64,
 ) -> Vec<Line> {
+    lines_beside(&[], (mesh, field, sharp), h)
+}
+
+/// The same beside lines that are followed in any case: edges of these are in none, and their ends
+/// are ends too.
+pub fn lines_beside(
+    firm: &[Line],
+    (mesh, field, sharp): (&TriangleMesh, &OrientationField, &HalfedgeMap<bool>),
+    h: f64,
+) -> Vec<Line> {
     let all = longest_first(mesh, chains(mesh, field, sharp));
+    let is_firm = on_either_side(mesh, firm);
     let long = all
         .into_iter()
-        .filter(|(length, _)| *length >= SHORTEST * h);
+        .filter(|(length, line)| *length >= SHORTEST * h && !line.iter().any(|&h| is_firm[h]));
     let singular = mesh.vertex_ids().filter(|&v| field.indices[v] != 0);
     let mut kept: Vec<VertexId> = singular.collect();
+    kept.extend(firm.iter().flat_map(|line| line.ends));
     let mut lines = Vec::new();
     for (_, line) in long {
         let is_free = |v: VertexId| {
@@ -76,6 +90,23 @@ pub fn whole_lines(
     pieces.map(|halfedges| Line::new(mesh, halfedges)).collect()
 }
 
+/// Those of the lines of a network that lie on some of its edges, as lines that have to be met.
+pub fn firm_lines(all: Vec<Line>, is_wanted: &HalfedgeMap<bool>) -> Vec<Line> {
+    let wanted = all.into_iter().filter(|line| is_wanted[line.halfedges[0]]);
+    wanted.map(Line::firm).collect()
+}
+
+fn on_either_side(mesh: &TriangleMesh, lines: &[Line]) -> HalfedgeMap<bool> {
+    let mut is_on = HalfedgeMap::filled(3 * mesh.n_faces(), false);
+    for &h in lines.iter().flat_map(|line| &line.halfedges) {
+        is_on[h] = true;
+        if let Some(twin) = mesh.twin(h) {
+            is_on[twin] = true;
+        }
+    }
+    is_on
+}
+
 /// Lines with their lengths, longest first; of equally long ones the order stays.
 fn longest_first(mesh: &TriangleMesh, lines: Vec<Vec<HalfedgeId>>) -> Vec<(f64, Vec<HalfedgeId>)> {
     let measured = lines.into_iter().map(|line| (length(mesh, &line), line));
@@ -98,6 +129,15 @@ impl Line {
         Self {
             ends: [mesh.origin(first), mesh.target(last)],
             halfedges,
+            is_firm: false,
+        }
+    }
+
+    /// The same as one that has to be met.
+    pub fn firm(self) -> Self {
+        Self {
+            is_firm: true,
+            ..self
         }
     }
 

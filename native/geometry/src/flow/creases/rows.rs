@@ -10,13 +10,23 @@ use crate::flow::rings::off_axis;
 /// A line is not put onto an axis from which its wish is farther than this share of its length.
 const OBLIQUE: f64 = 0.5;
 
+/// The equation that puts a line along an axis.
+pub struct Row {
+    /// Its factors, one for each real part of the periods.
+    pub row: Vec<f64>,
+    /// Whether the line has to be met.
+    pub is_firm: bool,
+}
+
 /// The equations that put the lines of a complex with chosen periods along the axes they are
-/// wished to be near; none for lines that are wished to be oblique
+/// wished to be near, those of firm lines first; none for lines that are wished to be oblique
 /// and not firm, and those of ties.
-pub fn rows(complex: &Complex) -> Vec<Vec<f64>> {
+pub fn rows(complex: &Complex) -> Vec<Row> {
     let is_tied = |line: &usize| (complex.chains.ties.iter()).any(|tie| tie.lines.contains(line));
     let lines = (0..complex.chains.n_lines()).filter(|line| !is_tied(line));
-    lines.filter_map(|line| row(complex, line)).collect()
+    let mut rows: Vec<Row> = lines.filter_map(|line| row(complex, line)).collect();
+    rows.sort_by_key(|row| !row.is_firm);
+    rows
 }
 
 /// The equations that make the lines of ties each other's images, two for each tie.
@@ -36,13 +46,17 @@ fn tied(complex: &Complex, Tie { lines, turns }: Tie) -> [Vec<f64>; 2] {
     })
 }
 
-fn row(complex: &Complex, line: usize) -> Option<Vec<f64>> {
+fn row(complex: &Complex, line: usize) -> Option<Row> {
     let wished = complex.sum_along(line, &complex.wish);
     let part: Part = off_axis(wished);
-    if complex.chains.firm.is_empty() && part.of(wished).abs() > OBLIQUE * wished.length() {
+    let is_firm = complex.chains.is_firm(line);
+    if !is_firm && part.of(wished).abs() > OBLIQUE * wished.length() {
         return None;
     }
-    Some(real_row(&complex.coefficients_along(line), part))
+    Some(Row {
+        row: real_row(&complex.coefficients_along(line), part),
+        is_firm,
+    })
 }
 
 /// Firm lines as sums of periods, to tell in how many a grid has no straight way between the ends.
@@ -53,10 +67,10 @@ pub struct Firm {
 impl Firm {
     /// The firm lines of a complex with chosen periods.
     pub fn of(complex: &Complex) -> Self {
-        let lines = complex.chains.firm.iter().enumerate();
+        let lines = complex.chains.firm.iter();
         Self {
             lines: lines
-                .map(|(i, &ends)| (complex.coefficients_along(i), ends))
+                .map(|firm| (complex.coefficients_along(firm.line), firm.ends))
                 .collect(),
         }
     }

@@ -35,18 +35,18 @@ pub fn seams(
     complex: &Complex,
     (quads, positions): (&[[u32; 4]], &[DVec3]),
 ) -> Vec<Option<Seam>> {
-    let firm = complex.chains.firm.iter().copied();
+    let firm = complex.chains.firm.iter().map(|firm| firm.ends);
     let walker = Walker::new(quads, positions.len()).stopping_at(firm);
-    let are_firm = !complex.chains.firm.is_empty();
     let mut is_taken = vec![false; positions.len()];
     let mut seams = Vec::new();
     for (i, line) in lines.iter().enumerate() {
+        let is_firm = line.is_firm;
         let span = complex.sum_along(i, &complex.start);
         let walks = walker.along(span, line.kept_ends(complex)).into_iter();
         let line = polyline(mesh, line);
         let laid = walks.map(|walk| lay(&line, &walk, positions));
         let best = laid.reduce(|a, b| if b.0 < a.0 { b } else { a });
-        let near = best.filter(|(miss, seam)| are_firm || is_near(seam, *miss));
+        let near = best.filter(|(miss, seam)| is_firm || is_near(seam, *miss));
         let seam = near.map(|(_, seam)| seam).filter(|seam| {
             let mut inner = seam.vertices[1..seam.vertices.len() - 1].iter();
             !inner.any(|v| is_taken[v.index()])

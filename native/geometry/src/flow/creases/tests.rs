@@ -73,6 +73,7 @@ fn quads_of(mesh: TriangleMesh) -> Flow {
     let guides = Guides {
         lines: &marked,
         marked: &marked,
+        firm: None,
         mirror: None,
     };
     flow(&map, guides, &flow::Settings::new(400), &Progress::none()).unwrap()

@@ -30,17 +30,19 @@ pub struct Plan {
     pub beside: Vec<Line>,
     /// Ways from the plane to everything on the positive side that is kept.
     pub pairs: Vec<Pair>,
-    /// Whether all lines have to be met.
-    pub is_firm: bool,
 }
 
 impl Plan {
     /// The same with lines that all have to be met.
-    pub fn firm(self) -> Self {
-        Self {
-            is_firm: true,
-            ..self
-        }
+    pub fn firm(mut self) -> Self {
+        let all = self.plane.iter_mut().chain(&mut self.beside);
+        all.for_each(|line| line.is_firm = true);
+        self
+    }
+
+    /// Whether there are lines that have to be met.
+    pub fn is_firm(&self) -> bool {
+        self.lines().any(|line| line.is_firm)
     }
 
     /// All lines, those in the plane first.
@@ -93,7 +95,6 @@ pub fn plan(doubled: &Doubled, field: &OrientationField, creases: &[Line]) -> Pl
         plane,
         beside,
         pairs,
-        is_firm: false,
     }
 }
 
@@ -113,6 +114,7 @@ fn both_sides(doubled: &Doubled, creases: &[Line]) -> Vec<Line> {
             .map(|&h| doubled.image_along(h))
             .collect(),
         ends: line.ends.map(|v| doubled.image(v)),
+        is_firm: line.is_firm,
     };
     own.flat_map(|line| [line.clone(), image(line)]).collect()
 }
@@ -140,6 +142,7 @@ fn plane(doubled: &Doubled, is_kept: &mut VertexMap<bool>) -> Vec<Line> {
         .map(|piece| Line {
             halfedges: piece.to_vec(),
             ends: [mesh.origin(piece[0]), mesh.target(piece[piece.len() - 1])],
+            is_firm: false,
         })
         .collect()
 }

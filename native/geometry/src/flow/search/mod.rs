@@ -14,7 +14,7 @@ use thiserror::Error;
 
 use super::complex::Complex;
 use super::covariance::Dense;
-use super::creases::{self, Firm};
+use super::creases::{self, Firm, Row};
 use super::drag::{SHORT, State};
 use super::grid::{self, Grid, NotReadable};
 use super::periods::{self, NotASphere, Periods, dot};
@@ -184,15 +184,16 @@ impl<'a> Problem<'a> {
         let mut start = Rounding::new(start, wish, covariance.clone());
         let mut kept = creases::tie_rows(complex);
         kept.retain(|row| impose_row(&mut start, row));
-        let mut lines = creases::rows(complex);
         let dear = |start: &Rounding, row: &[f64]| {
             let off = dot(row, &start.wish);
             let variance = start.covariance.between(row, row);
             off * off > DEAREST * n_quads * variance.max(1e-9)
         };
-        let are_firm = !complex.chains.firm.is_empty();
-        lines.retain(|row| (are_firm || !dear(&start, row)) && impose_row(&mut start, row));
-        kept.append(&mut lines);
+        for Row { row, is_firm } in creases::rows(complex) {
+            if (is_firm || !dear(&start, &row)) && impose_row(&mut start, &row) {
+                kept.push(row);
+            }
+        }
         Ok(Self {
             wish: start.wish.clone(),
             start,

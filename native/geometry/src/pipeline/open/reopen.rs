@@ -1,0 +1,105 @@
+//! Keeps the quads that lie on what is real.
+
+use std::collections::HashSet;
+
+use glam::DVec3;
+
+use super::Opening;
+use crate::deform::{Deformed, Target};
+use crate::groups::Groups;
+use crate::measure::{PolygonEdges, area_vector, topology, topology_of_triangles};
+use crate::mesh::{FaceId, PolygonMesh, VertexId};
+use crate::progress::{Cancelled, Progress};
+
+impl Opening {
+    /// The faces on what is real, those between some edges together; or why that is not the part.
+    ///
+    /// The borders of what is left are moved onto those of the part. The proof: it is one manifold
+    /// piece with as many borders and handles as the part has.
+    ///
+    /// # Errors
+    /// When cancelled.
+    pub fn reopened(
+        &self,
+        deformed: &Deformed,
+        (border, target): (&[[VertexId; 2]], &Target),
+        progress: &Progress<'_>,
+    ) -> Result<Result<Deformed, String>, Cancelled> {
+        let mesh = &deformed.mesh;
+        let (patches, n_patches) = patches(mesh, border, progress)?;
+        let mut votes = vec![0.0; n_patches];
+        for (face, &patch) in mesh.face_ids().zip(&patches) {
+            votes[patch as usize] += self.vote(mesh, face, target);
+        }
+        let is_kept: Vec<bool> = patches.iter().map(|&p| votes[p as usize] > 0.0).collect();
+        let opened = deformed.only(&is_kept, progress)?;
+        let opened = self.onto_borders(opened, progress)?;
+        let found = topology(&opened.mesh, progress)?;
+        let wanted = topology_of_triangles(self.bare.mesh());
+        let figures = [
+            ("pieces", found.n_components, wanted.n_components),
+            ("borders", found.n_borders, wanted.n_borders),
+        ];
+        for (what, found, wanted) in figures {
+            if found != wanted {
+                return Ok(Err(format!("{found} {what} are left of {wanted}")));
+            }
+        }
+        Ok(match found.genus {
+            None => Err("what is left is no manifold surface".to_owned()),
+            Some(genus) if Some(genus) != wanted.genus => Err(format!("{genus} handles are left")),
+            Some(_) => Ok(opened),
+        })
+    }
+
+    /// The area of a face, less than zero if it lies on what is virtual.
+    fn vote(&self, mesh: &PolygonMesh, face: FaceId, target: &Target) -> f64 {
+        let corners: Vec<DVec3> = mesh.face(face).iter().map(|&v| mesh.position(v)).collect();
+        let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
+        let halves = (2..corners.len()).map(|i| area_vector([corners[0], corners[i - 1], corners[i]]));
+        let area = halves.sum::<DVec3>();
+        let away = |real: bool| {
+            let is_wanted = |face| self.is_real[face] == real && target.looks_along(face, area);
+            let found = target.bvh().closest_where(middle, f64::INFINITY, is_wanted);
+            found.map_or(f64::INFINITY, |found| found.distance_squared)
+        };
+        if away(true) <= away(false) {
+            area.length()
+        } else {
+            -area.length()
+        }
+    }
+
+    /// The same with the vertices of its borders on those of the part.
+    fn onto_borders(&self, opened: Deformed, progress: &Progress<'_>) -> Result<Deformed, Cancelled> {
+        let mesh = &opened.mesh;
+        let edges = PolygonEdges::new(mesh, progress)?;
+        let is_border = edges.border_vertices(mesh.n_vertices());
+        let tree = self.edges.tree(progress)?;
+        let moved = mesh.positions().iter().zip(is_border);
+        let moved = moved.map(|(&p, is_border)| if is_border { tree.closest(p).position } else { p });
+        let moved = moved.collect();
+        Ok(opened.moved(moved))
+    }
+}
+
+/// What hangs together over edges that are not among some.
+fn patches(
+    mesh: &PolygonMesh,
+    border: &[[VertexId; 2]],
+    progress: &Progress<'_>,
+) -> Result<(Vec<u32>, usize), Cancelled> {
+    let border: HashSet<[VertexId; 2]> = border.iter().map(|&[a, b]| [a.min(b), a.max(b)]).collect();
+    let edges = PolygonEdges::new(mesh, progress)?;
+    let mut groups = Groups::new(mesh.n_faces());
+    for c in 0..edges.n_corners() {
+        let Some(twin) = edges.twin(c).filter(|&twin| c < twin) else {
+            continue;
+        };
+        if !border.contains(&edges.ends[edges.of_corner[c] as usize]) {
+            let [a, b] = [c, twin].map(|c| edges.face_of[c] as usize);
+            groups.link(a, b);
+        }
+    }
+    Ok(groups.numbered())
+}
