@@ -1,0 +1,91 @@
+//! The mesh while its borders are closed, one after the other.
+
+use std::collections::HashSet;
+
+use glam::DVec3;
+
+use super::frame::Frame;
+use super::membrane::refine;
+use super::patch::Patch;
+use super::split::key;
+use super::start;
+use crate::mesh::{HalfedgeId, Id, TriangleMesh, VertexId, VertexMap};
+use crate::progress::{Cancelled, Progress};
+
+/// No place in a loop.
+const NONE: u32 = u32::MAX;
+
+/// The mesh that was given and what has been added to it.
+pub struct Sheet<'a> {
+    pub mesh: &'a TriangleMesh,
+    pub positions: Vec<DVec3>,
+    pub faces: Vec<[VertexId; 3]>,
+    /// The place of each vertex in the loop that is being closed.
+    places: VertexMap<u32>,
+}
+
+impl<'a> Sheet<'a> {
+    pub fn new(mesh: &'a TriangleMesh) -> Self {
+        Self {
+            mesh,
+            positions: mesh.positions().to_vec(),
+            faces: mesh.faces().to_vec(),
+            places: VertexMap::filled(mesh.n_vertices(), NONE),
+        }
+    }
+
+    /// Where a halfedge of the mesh starts and ends.
+    pub fn ends(&self, h: HalfedgeId) -> [VertexId; 2] {
+        [self.mesh.origin(h), self.mesh.target(h)]
+    }
+
+    /// Closes a loop by a membrane.
+    pub fn cap(&mut self, border: &[HalfedgeId], progress: &Progress) -> Result<(), Cancelled> {
+        // The faces beyond an edge run through it the other way.
+        let ring = border.iter().rev().map(|&h| self.mesh.origin(h));
+        let ring: Vec<VertexId> = ring.collect();
+        let points: Vec<DVec3> = ring.iter().map(|&v| self.mesh.position(v)).collect();
+        let frame = Frame::of(&points);
+        let points: Vec<DVec3> = points.into_iter().map(|p| frame.inside(p)).collect();
+        progress.check()?;
+        let mut patch = Patch::new(&points, &start::triangles(&points), self.chords(&ring));
+        if self.mesh.n_faces() == 1 {
+            let [a, b, c] = [0, 1, 2].map(|i| points[i]);
+            patch.split_face(0, (a + b + c) / 3.0);
+        }
+        refine(&mut patch, progress)?;
+        let first = self.positions.len();
+        let inner = patch.inner().map(|v| frame.outside(patch.positions[v]));
+        self.positions.extend(inner);
+        let name = |v: VertexId| match ring.get(v.index()) {
+            Some(&of_ring) => of_ring,
+            None => VertexId::from_index(first + v.index() - ring.len()),
+        };
+        self.faces.extend(patch.faces().map(|face| face.map(name)));
+        Ok(())
+    }
+
+    /// The pairs of places in a loop that an inner edge of the mesh joins.
+    fn chords(&mut self, ring: &[VertexId]) -> HashSet<[VertexId; 2]> {
+        for (place, &v) in ring.iter().enumerate() {
+            self.places[v] = place as u32;
+        }
+        let mut chords = HashSet::new();
+        for &v in ring {
+            for h in self
+                .mesh
+                .outgoing(v)
+                .filter(|&h| self.mesh.twin(h).is_some())
+            {
+                let [a, b] = self.ends(h).map(|v| self.places[v]);
+                if b != NONE {
+                    chords.insert(key(VertexId(a), VertexId(b)));
+                }
+            }
+        }
+        for &v in ring {
+            self.places[v] = NONE;
+        }
+        chords
+    }
+}

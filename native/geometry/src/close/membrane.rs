@@ -1,0 +1,108 @@
+//! Makes triangles over a loop fine and smooth.
+
+use glam::DVec3;
+
+use super::patch::Patch;
+use crate::mesh::{HalfedgeId, Id, VertexId, VertexMap};
+use crate::progress::{Cancelled, Progress};
+
+/// How much longer edges may be for each unit of distance to the loop. With less a cap has more
+/// faces than its loop is worth; with more its triangles are slivers.
+const GRADE: f64 = 0.5;
+
+/// A face is split where its middle is farther from its corners than this times the length wanted
+/// (Liepa 2003).
+const ROOM: f64 = std::f64::consts::SQRT_2;
+
+/// The shortest length that is wanted, as a share of the loop's mean edge: vertices that lie on
+/// each other would ask for ever smaller faces.
+const FINEST: f64 = 1.0 / 16.0;
+
+/// Every round halves what is too large at least; a loop of 10,000 edges needs half of these.
+const ROUNDS: usize = 40;
+
+/// How often all vertices are moved. They settle fast where there are few rows of them.
+const MOVES: usize = 12;
+
+/// Splits and turns the triangles of a patch until they are as fine as its loop, and relaxes them.
+pub fn refine(patch: &mut Patch, progress: &Progress) -> Result<(), Cancelled> {
+    let mut wanted = lengths(patch);
+    let most = 40 * wanted.len() + 400;
+    patch.settle(patch.halfedge_ids().collect());
+    for _ in 0..ROUNDS {
+        progress.check()?;
+        let n_before = patch.n_faces();
+        let mut open = Vec::new();
+        for face in 0..n_before {
+            if patch.n_faces() >= most {
+                break;
+            }
+            if let Some((middle, length)) = is_large(patch, &wanted, face) {
+                let new = patch.split_face(face, middle);
+                wanted.push(length);
+                open.extend(patch.outgoing(new).map(HalfedgeId::next));
+            }
+        }
+        if open.is_empty() {
+            break;
+        }
+        patch.settle(open);
+        relax(patch);
+        patch.settle(patch.halfedge_ids().collect());
+    }
+    for _ in 0..MOVES {
+        progress.check()?;
+        relax(patch);
+        patch.settle(patch.halfedge_ids().collect());
+    }
+    Ok(())
+}
+
+/// How long edges are to be at each vertex of the loop, and at those that are inside already.
+fn lengths(patch: &Patch) -> VertexMap<f64> {
+    let inner = patch
+        .inner()
+        .next()
+        .map_or(patch.positions.len(), Id::index);
+    let at = |i: usize| patch.positions[VertexId::from_index(i % inner)];
+    let edges: Vec<f64> = (0..inner).map(|i| at(i).distance(at(i + 1))).collect();
+    let mean = edges.iter().sum::<f64>() / inner as f64;
+    let beside = (0..inner).map(|i| edges[i].midpoint(edges[(i + inner - 1) % inner]));
+    let of_loop = beside.map(|length| length.max(FINEST * mean));
+    let of_others = (inner..patch.positions.len()).map(|_| mean);
+    of_loop.chain(of_others).collect()
+}
+
+/// Where a face is to be split, if it is too large, and the length wanted there.
+fn is_large(patch: &Patch, wanted: &VertexMap<f64>, face: usize) -> Option<(DVec3, f64)> {
+    let corners = patch.face(face);
+    let middle = corners.map(|v| patch.positions[v]).iter().sum::<DVec3>() / 3.0;
+    let far = corners.map(|v| middle.distance(patch.positions[v]));
+    let lengths = corners.map(|v| wanted[v]);
+    let graded = (0..3).map(|i| lengths[i] + GRADE * far[i]);
+    let length = graded.fold(f64::INFINITY, f64::min);
+    let is_far = |i: usize| ROOM * far[i] > length.max(lengths[i]);
+    (0..3).all(is_far).then_some((middle, length))
+}
+
+/// Moves every inner vertex to the middle of its neighbours, as far as the area does not grow: so
+/// nothing folds on a plane, and elsewhere the membrane tightens.
+fn relax(patch: &mut Patch) {
+    for v in patch.inner() {
+        let around: Vec<[DVec3; 2]> = patch
+            .outgoing(v)
+            .map(|h| [h.next(), h.prev()].map(|x| patch.positions[patch.origin(x)]))
+            .collect();
+        let here = patch.positions[v];
+        let area = |p: DVec3| -> f64 {
+            let twice = around.iter().map(|[a, b]| (a - p).cross(b - p).length());
+            twice.sum()
+        };
+        let middle = around.iter().map(|[a, _]| *a).sum::<DVec3>() / around.len() as f64;
+        let most = area(here) * (1.0 + 1e-12);
+        let steps = [1.0, 0.5, 0.25].map(|share| here.lerp(middle, share));
+        if let Some(there) = steps.into_iter().find(|&p| area(p) <= most) {
+            patch.positions[v] = there;
+        }
+    }
+}
