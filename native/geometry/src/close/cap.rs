@@ -72,7 +72,11 @@ impl<'a> Sheet<'a> {
         }
         let mut chords = HashSet::new();
         for &v in ring {
-            for h in self.mesh.outgoing(v).filter(|&h| self.mesh.twin(h).is_some()) {
+            for h in self
+                .mesh
+                .outgoing(v)
+                .filter(|&h| self.mesh.twin(h).is_some())
+            {
                 let [a, b] = self.ends(h).map(|v| self.places[v]);
                 if b != NONE {
                     chords.insert(key(VertexId(a), VertexId(b)));

@@ -60,7 +60,10 @@ pub fn refine(patch: &mut Patch, progress: &Progress) -> Result<(), Cancelled> {
 
 /// How long edges are to be at each vertex of the loop, and at those that are inside already.
 fn lengths(patch: &Patch) -> VertexMap<f64> {
-    let inner = patch.inner().next().map_or(patch.positions.len(), Id::index);
+    let inner = patch
+        .inner()
+        .next()
+        .map_or(patch.positions.len(), Id::index);
     let at = |i: usize| patch.positions[VertexId::from_index(i % inner)];
     let edges: Vec<f64> = (0..inner).map(|i| at(i).distance(at(i + 1))).collect();
     let mean = edges.iter().sum::<f64>() / inner as f64;

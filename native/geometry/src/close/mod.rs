@@ -95,8 +95,7 @@ impl Closed {
     /// The edges between a real and a virtual face, on both sides of each.
     pub fn border(&self) -> HalfedgeMap<bool> {
         let is_real = |h: HalfedgeId| self.is_real[h.face()];
-        let is_border =
-            |h| is_real(h) != self.mesh.twin(h).is_some_and(is_real);
+        let is_border = |h| is_real(h) != self.mesh.twin(h).is_some_and(is_real);
         self.mesh.halfedge_ids().map(is_border).collect()
     }
 }
@@ -119,8 +118,9 @@ pub fn close(
     let loops = mesh.border_loops();
     check(mesh, loops.len())?;
     let mut sheet = Sheet::new(mesh);
-    let (filled, mut open): (Vec<_>, Vec<_>) =
-        loops.into_iter().partition(|border| is_filled(mesh, border, settings.fill));
+    let (filled, mut open): (Vec<_>, Vec<_>) = loops
+        .into_iter()
+        .partition(|border| is_filled(mesh, border, settings.fill));
     for (i, border) in filled.iter().enumerate() {
         progress.at(0.3 * i as f64 / filled.len() as f64)?;
         sheet.cap(border, progress)?;
@@ -166,7 +166,10 @@ fn check(mesh: &TriangleMesh, n_loops: usize) -> Result<(), Error> {
 }
 
 fn length(mesh: &TriangleMesh, border: &[HalfedgeId]) -> f64 {
-    let edge = |&h: &HalfedgeId| mesh.position(mesh.origin(h)).distance(mesh.position(mesh.target(h)));
+    let edge = |&h: &HalfedgeId| {
+        mesh.position(mesh.origin(h))
+            .distance(mesh.position(mesh.target(h)))
+    };
     border.iter().map(edge).sum()
 }
 
@@ -181,7 +184,8 @@ fn is_filled(mesh: &TriangleMesh, border: &[HalfedgeId], fill: Fill) -> bool {
 /// The first of the longest loops.
 fn take_longest(mesh: &TriangleMesh, loops: &mut Vec<Vec<HalfedgeId>>) -> Option<Vec<HalfedgeId>> {
     let lengths: Vec<f64> = loops.iter().map(|border| length(mesh, border)).collect();
-    let longest = (0..loops.len()).max_by(|&a, &b| lengths[a].total_cmp(&lengths[b]).then(b.cmp(&a)));
+    let longest =
+        (0..loops.len()).max_by(|&a, &b| lengths[a].total_cmp(&lengths[b]).then(b.cmp(&a)));
     longest.map(|i| loops.remove(i))
 }
 
@@ -206,3 +210,6 @@ fn is_doubled(sheet: &Sheet, border: &[HalfedgeId]) -> bool {
     let area: f64 = sheet.faces.iter().map(area).sum();
     around * around > SHEET * 4.0 * std::f64::consts::PI * area
 }
+
+#[cfg(test)]
+mod tests;

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::measure::clip_ears;
-use crate::mesh::{Id, VertexId};
+use crate::mesh::VertexId;
 
 /// Loops of more vertices lose ears until so many are left, whose best triangles are searched for:
 /// that takes the third power of time. Fewer find worse ones.
@@ -52,7 +52,10 @@ struct Flat {
 /// Triangles that do not overlap on the plane that fits best, where there are such.
 fn cut_flat(points: &[DVec3]) -> Option<Flat> {
     let triangles = clip_ears(points)?;
-    let vectors: Vec<DVec3> = triangles.iter().map(|&t| twice_area_vector(points, t)).collect();
+    let vectors: Vec<DVec3> = triangles
+        .iter()
+        .map(|&t| twice_area_vector(points, t))
+        .collect();
     let whole: DVec3 = vectors.iter().sum();
     let normal = whole.try_normalize()?;
     let folded: f64 = vectors.iter().map(|v| -v.dot(normal).min(0.0)).sum();

@@ -140,11 +140,42 @@ pub fn deform(
     settings: &Settings,
     progress: &Progress,
 ) -> Result<Deformed, Error> {
+    let primitive = (primitive, &Held::default());
+    deform_held(map, primitive, target, settings, progress)
+}
+
+/// Vertices that have their place from the beginning, and edges that stay.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Held {
+    /// The edges, each once, smaller end first, in order.
+    pub edges: Vec<[VertexId; 2]>,
+    /// Where in space vertices are put, and stay.
+    pub goals: Vec<(VertexId, DVec3)>,
+}
+
+/// The same of a primitive some of whose vertices and edges are held.
+///
+/// # Errors
+/// As above.
+pub fn deform_held(
+    map: &SphereMap,
+    (primitive, held): (&PolygonMesh, &Held),
+    target: &Target,
+    settings: &Settings,
+    progress: &Progress,
+) -> Result<Deformed, Error> {
     progress.check()?;
     check_primitive(primitive)?;
     progress.check()?;
     let mut report = Report::default();
     let mut sheet = Sheet::new(map, vertex_normals(map.mesh()), primitive);
+    for &(v, place) in &held.goals {
+        sheet.lift(v, place);
+        sheet.pin(v);
+    }
+    for &[a, b] in &held.edges {
+        sheet.keep_edge(a, b);
+    }
     let mut cover = (primitive.n_quads() > 0).then(|| Cover::new(map, &sheet));
     progress.check()?;
     let n = match cover {

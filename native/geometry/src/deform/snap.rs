@@ -105,7 +105,7 @@ impl Plan {
             edge,
             vertices: Bvh::of_points(&points),
             router: Router::new(n, edge),
-            taken: VertexMap::filled(n, false),
+            taken: sheet.vertex_ids().map(|v| sheet.is_pinned(v)).collect(),
             corners: HashMap::new(),
             goals: Vec::new(),
             edges: Vec::new(),

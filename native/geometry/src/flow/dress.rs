@@ -96,6 +96,9 @@ pub(super) fn dress(
     }
     if let Some(network) = &network {
         network.settle(&mut field);
+        if settings.creases == Creases::Long {
+            network.clear(&mut field, sizes);
+        }
     }
     mirror(&mut field);
     let part = progress.part("", 0.5, 0.7);

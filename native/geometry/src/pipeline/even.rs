@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use crate::deform::{self, Sizes, Target};
+use crate::deform::{self, Held, Sizes, Target};
 use crate::elementary::powf;
 use crate::measure::{FeatureLine, feature_lines, loose_share, sharp_edges};
 use crate::mesh::{HalfedgeId, HalfedgeMap, Id, PolygonMesh, TriangleMesh, VertexId, VertexMap};
@@ -13,6 +13,7 @@ use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
 use crate::sphere::{self, Adaptive};
 use crate::sphere_map::SphereMap;
+use super::open::Opening;
 use crate::{embed, flow, pipeline, transfer};
 
 /// The even surface has this many triangles at least, so that the field sees the shape.
@@ -121,8 +122,10 @@ pub struct For<'a> {
     pub seed: u64,
     /// Lines of the map's mesh that have edges of it all along.
     pub lines: &'a [FeatureLine],
-    /// The borders of a part that was closed.
-    pub border: Option<&'a Marked>,
+    /// Whether they are all edges of a solid.
+    pub is_solid: bool,
+    /// What is real of a part that was closed.
+    pub opening: Option<&'a Opening>,
 }
 
 /// A solid has few edges: of more lines, as of the facets of a model, no grid keeps to all.
@@ -167,17 +170,24 @@ pub fn even(
     let density = density(map.mesh(), quads, &progress.part("", 0.0, 0.1))?;
     let is_finer = density.iter().any(|&wanted| wanted > 1.0);
     let part = progress.part("", 0.1, 0.7);
-    let Adaptive { primitive, report } =
-        sphere::sized(map, (&density, quads.lines), &settings, &part)?;
+    let made = sphere::sized(map, (&density, quads.lines), &settings, &part)?;
     let part = progress.part("", 0.7, 1.0);
+    let held = match quads.opening {
+        Some(opening) => opening.held(map, &made, &part)?,
+        None => Held::default(),
+    };
+    let Adaptive {
+        primitive, report, ..
+    } = made;
     let settings = deform::Settings {
         sizes: if is_finer { Sizes::Own } else { Sizes::Equal },
         // Quads are made on it, and tips that are moved would be lost to them.
         separates: false,
-        is_on_lines: !quads.lines.is_empty(),
+        is_on_lines: quads.is_solid,
         ..deform::Settings::default()
     };
-    let deformed = deform::deform(map, &primitive, target, &settings, &part)?;
+    let primitive = (&primitive, &held);
+    let deformed = deform::deform_held(map, primitive, target, &settings, &part)?;
     // A vertex that did not quite arrive must not cut a mark in two.
     let met = marked.met((&deformed.mesh, &deformed.led), progress)?;
     let mesh = marked.drawn(&triangles(&deformed.mesh), &met, progress)?;
@@ -185,11 +195,7 @@ pub fn even(
     let mut lines = [&deformed.features[..], &marked].concat();
     lines.sort_unstable();
     let [lines, marked] = [lines, marked].map(|edges| either_side(&mesh, &edges));
-    let border = quads.border.map(|border| {
-        let met = border.met((&deformed.mesh, &deformed.led), progress)?;
-        Ok::<_, Cancelled>(either_side(&mesh, &met))
-    });
-    let border = border.transpose()?;
+    let border = quads.opening.map(|_| either_side(&mesh, &held.edges));
     let sphere = VertexMap::from_vec(deformed.sphere);
     Ok(Even {
         map: SphereMap::prove(mesh, sphere).map_err(embed::Error::from)?,

@@ -82,6 +82,7 @@ type Wearing = (
     Option<HalfedgeMap<bool>>,
 );
 
+fn even_n(m: &HalfedgeMap<bool>) -> usize { m.iter().filter(|&&x| x).count() }
 /// Why an attempt gave no quads.
 struct Refusal {
     reason: String,
@@ -117,7 +118,8 @@ pub fn along(
         sizes: &style.sizes,
         seed: settings.seed,
         lines: if lines.is_empty() { borders } else { lines },
-        border: asked.opening.map(|opening| &opening.edges),
+        is_solid: !lines.is_empty(),
+        opening: asked.opening,
     };
     let even = clock.step("sphere", || {
         told(even(map, (target, &wanted), &quads, &part))
@@ -138,6 +140,7 @@ pub fn along(
         asked,
         style,
     };
+    eprintln!("DBG even: lines {} border halfedges {:?} firm lines given {} solid {}", even_n(&ground.lines), ground.border.as_ref().map(even_n), borders.len(), lines.len());
     let part = progress.part("", 0.15, 1.0);
     let found = match asked.axis {
         Some(axis) => symmetric((ground, axis), budget, clock, &part),
@@ -243,6 +246,7 @@ impl Ground<'_> {
             }
             let to = from + 0.6 * (1.0 - from);
             let found = self.attempt(attempt, clock, &progress.part("", from, to))?;
+            eprintln!("DBG attempt {attempt:?} doubled {} solid {}: {:?}", self.doubled.is_some(), self.is_solid(), found.as_ref().map(|f| (f.n_failed(), f.n_missed, f.deformed.report)).map_err(|e| e.reason.clone()));
             budget.is_over |= matches!(found, Err(Refusal { is_over: true, .. }));
             let found = found.map_err(|refusal| refusal.reason);
             let found = found.and_then(FlowedPart::not_cut_off);
@@ -313,7 +317,7 @@ impl Ground<'_> {
             evenness: self.evenness(),
             is_on_lines: self.keeps_lines(),
             // What is virtual may lie on what is real.
-            separates: self.asked.opening.is_none(),
+            separates: self.asked.opening.is_none_or(|opening| opening.is_simple),
             ..deform::Settings::default()
         };
         let fit = || deform::deform_flow(&self.even, flowing, self.target, &settings, &part);

@@ -10,7 +10,7 @@ use super::clock::Clock;
 use super::even::{either_side, triangles};
 use super::part::{Ground, Wanted, embed_mesh};
 use super::probe::Halves;
-use crate::deform::{self, Deformed, Target};
+use crate::deform::{self, Deformed, Held, Target};
 use crate::mesh::VertexMap;
 use crate::pair::{self, Paired};
 use crate::pipeline;
@@ -162,14 +162,22 @@ fn quarters(
         };
         let part = progress.part("sphere", 0.0, 0.5);
         let sized = || sphere::sized(map, (&density, lines), &settings, &part);
-        let Adaptive { primitive, report } = clock.step("sphere", sized)?;
+        let made = clock.step("sphere", sized)?;
+        let held = match ground.opening {
+            Some(opening) => opening.held(map, &made, &part)?,
+            None => Held::default(),
+        };
+        let Adaptive {
+            primitive, report, ..
+        } = made;
+        let primitive = (&primitive, &held);
         let part = progress.part("deform", 0.5, 0.8);
         let settings = deform::Settings {
             separates: false,
             ..ground.deform()
         };
         let even = clock.step("deform", || {
-            deform::deform(map, &primitive, ground.target, &settings, &part)
+            deform::deform_held(map, primitive, ground.target, &settings, &part)
         })?;
         let mesh = triangles(&even.mesh);
         let kept = either_side(&mesh, &even.features);

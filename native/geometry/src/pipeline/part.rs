@@ -16,13 +16,11 @@ use super::paired::{Instead, Laid, paired};
 use super::report::{Mirrored, PartReport, Reduced};
 use super::settings::{Kind, Primitive, Settings};
 use super::{Error, ways};
-use crate::deform::Deformed;
+use crate::deform::{Deformed, Held};
 use crate::embed::{Embedded, OffsetPredictor};
 use crate::hierarchy::CollapseHierarchy;
-use crate::measure::FeatureLine;
 use crate::mesh::{HalfedgeMap, PolygonMesh, TriangleMesh, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
-use crate::sphere::Adaptive;
 use crate::sphere_map::SphereMap;
 use crate::{decimate, deform, embed, measure, sphere};
 
@@ -277,12 +275,11 @@ impl Wanted<'_> {
         progress: &Progress<'_>,
     ) -> Result<Laid, Error> {
         let stage = progress.part("sphere", 0.0, 0.5);
-        let lines = ground.opening.map_or(&[][..], |opening| &opening.lines);
-        let placed = clock.step("sphere", || self.place(hierarchy, (map, lines), &stage))?;
+        let placed = clock.step("sphere", || self.place((hierarchy, map), ground, &stage))?;
         let stage = progress.part("deform", 0.5, 1.0);
-        let (map, primitive) = (&placed.map, &placed.primitive);
+        let (map, primitive) = (&placed.map, (&placed.primitive, &placed.held));
         let settings = ground.deform();
-        let deform = || deform::deform(map, primitive, ground.target, &settings, &stage);
+        let deform = || deform::deform_held(map, primitive, ground.target, &settings, &stage);
         let deformed = clock.step("deform", deform)?;
         let deformed = ground.opened(deformed, progress)?;
         let deformed = deformed.map_err(|reason| Error::Unopened { reason })?;
@@ -300,9 +297,10 @@ impl Wanted<'_> {
     ) -> Result<deform::Target, Cancelled> {
         progress.check()?;
         let sharp = measure::sharp_edges(&part, self.settings.sharp_angle.to_radians());
+        // Borders are held from the beginning.
         let is_border = |h| border.is_some_and(|border| border[h]);
         let halfedges = part.halfedge_ids();
-        let either = halfedges.map(|h| sharp[h] || marked[h] || is_border(h));
+        let either = halfedges.map(|h| (sharp[h] || marked[h]) && !is_border(h));
         let either = either.collect();
         deform::Target::with_features(part, &either, progress)
     }
@@ -354,8 +352,8 @@ impl Wanted<'_> {
     /// on any map; a fixed primitive is even on the sphere and needs a map that keeps areas.
     fn place(
         &self,
-        hierarchy: &CollapseHierarchy,
-        (map, lines): (SphereMap, &[FeatureLine]),
+        (hierarchy, map): (&CollapseHierarchy, SphereMap),
+        ground: Ground<'_>,
         progress: &Progress<'_>,
     ) -> Result<Placed, Error> {
         let seed = self.settings.seed;
@@ -368,13 +366,18 @@ impl Wanted<'_> {
                     ..sphere::Settings::default()
                 };
                 let density = VertexMap::filled(map.mesh().n_vertices(), 1.0);
+                let lines = ground.opening.map_or(&[][..], |opening| &opening.lines);
                 let wish = (&density, lines);
-                let Adaptive { primitive, report } =
-                    sphere::sized(&map, wish, &settings, progress)?;
+                let made = sphere::sized(&map, wish, &settings, progress)?;
+                let held = match ground.opening {
+                    Some(opening) => opening.held(&map, &made, progress)?,
+                    None => Held::default(),
+                };
                 return Ok(Placed {
                     map,
-                    primitive,
-                    report: Some(report),
+                    primitive: made.primitive,
+                    held,
+                    report: Some(made.report),
                 });
             }
             Primitive::Flow | Primitive::QuadSphere => {
@@ -391,6 +394,7 @@ impl Wanted<'_> {
         Ok(Placed {
             map,
             primitive,
+            held: Held::default(),
             report: None,
         })
     }
@@ -405,8 +409,7 @@ impl Ground<'_> {
     /// How faces are laid on it that do not flow.
     pub fn deform(&self) -> deform::Settings {
         deform::Settings {
-            is_on_lines: self.opening.is_some(),
-            separates: self.opening.is_none(),
+            separates: self.opening.is_none_or(|opening| opening.is_simple),
             ..deform::Settings::default()
         }
     }
@@ -420,8 +423,7 @@ impl Ground<'_> {
         let Some(opening) = self.opening else {
             return Ok(Ok(deformed));
         };
-        let met = opening.edges.met((&deformed.mesh, &deformed.led), progress)?;
-        opening.reopened(&deformed, (&met, self.target), progress)
+        opening.reopened(&deformed, (&deformed.led, self.target), progress)
     }
 }
 
@@ -457,6 +459,7 @@ fn told(mirrored: Result<(), String>) -> Mirrored {
 struct Placed {
     map: SphereMap,
     primitive: PolygonMesh,
+    held: Held,
     report: Option<sphere::Report>,
 }
 

@@ -30,7 +30,12 @@ const LOOSE: f64 = 0.02;
 /// are no corners of quads, a hexagon's one.
 const ROUNDS_UP: f64 = 0.4;
 /// More units than this are not moved: the creases are then no solid's.
-const MOST_MOVES: usize = 200;
+const MOST_MOVES: usize = 2_000;
+
+/// How far from creases singularities are put, in edges of quads, where there is room.
+const ASIDE: f64 = 1.0;
+/// How far they are moved for it at most.
+const FARTHEST: f64 = 4.0;
 
 /// A network of creases on a closed surface of genus 0.
 pub struct Network<'a> {
@@ -119,6 +124,50 @@ impl<'a> Network<'a> {
         debug_assert_eq!(field.check(self.mesh), Ok(()));
     }
 
+    /// Moves singularities that are nearer to a crease than an edge of a quad away from it, where the
+    /// patch has room: else they and the crease would have to coincide. Directions do not change.
+    pub fn clear(&self, field: &mut OrientationField, sizes: &FaceMap<f64>) {
+        let depths = self.depths();
+        let edge = |v: VertexId| {
+            let (n, sum) = (self.mesh.outgoing(v))
+                .fold((0.0, 0.0), |(n, sum), h| (n + 1.0, sum + sizes[h.face()]));
+            sum / f64::max(n, 1.0)
+        };
+        let lies_free = |v: VertexId| self.indices[v].is_none() && !self.is_in_plane(v);
+        let near = |v: &VertexId| depths[*v] < ASIDE * edge(*v);
+        let own = self.mesh.vertex_ids().filter(|&v| self.is_own(v) && lies_free(v));
+        let close: Vec<VertexId> = own
+            .filter(|v| field.indices[*v] != 0 && near(v))
+            .collect();
+        for v in close {
+            let patch = self.patch(v);
+            let is_free = |u: VertexId| {
+                let is_inside = lies_free(u) && field.indices[u] == 0 && !near(&u);
+                is_inside && self.patch(u) == patch
+            };
+            let (distances, arrivals, last) = self.spread(&[v], is_free);
+            let within = |u: &VertexId| distances[*u] < FARTHEST * edge(v);
+            if let Some(last) = last.filter(within) {
+                let way = self.way_back(&arrivals, last);
+                shift(field, self.mesh, &way, field.indices[v]);
+            }
+        }
+        debug_assert_eq!(field.check(self.mesh), Ok(()));
+    }
+
+    /// The way by which a vertex was reached.
+    fn way_back(
+        &self,
+        arrivals: &VertexMap<Option<HalfedgeId>>,
+        last: VertexId,
+    ) -> Vec<HalfedgeId> {
+        let step = |v: VertexId| arrivals[v];
+        let way = std::iter::successors(step(last), |&h| step(self.mesh.origin(h)));
+        let mut way: Vec<HalfedgeId> = way.collect();
+        way.reverse();
+        way
+    }
+
     fn charges(&self, field: &OrientationField) -> Charges {
         let mut charges = Charges {
             vertices: vec![0; self.mesh.n_vertices()],
@@ -183,11 +232,7 @@ impl<'a> Network<'a> {
             is_goal[v] = true;
         }
         let (_, arrivals, last) = self.spread(from, |v| is_goal[v]);
-        let step = |v: VertexId| arrivals[v];
-        let way = std::iter::successors(step(last?), |&h| step(self.mesh.origin(h)));
-        let mut way: Vec<HalfedgeId> = way.collect();
-        way.reverse();
-        Some(way)
+        Some(self.way_back(&arrivals, last?))
     }
 
     /// Distances from some vertices and how each was reached, up to the first that is a goal; ways

@@ -8,15 +8,24 @@
 
 mod reopen;
 
+use glam::DVec3;
+
 use super::even::Marked;
 use super::{Error, Settings};
 use crate::close::{self, Closed};
 use crate::decimate;
-use crate::deform::Target;
+use crate::deform::{Held, Target};
 use crate::measure::{FeatureLine, feature_lines};
-use crate::mesh::{FaceMap, HalfedgeMap, TriangleMesh};
+use crate::mesh::{FaceMap, HalfedgeMap, TriangleMesh, VertexId};
+use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
+use crate::sphere::Adaptive;
 use crate::sphere_map::SphereMap;
+
+/// Places nearer to each other than this share of the diagonal are one.
+const SAME: f64 = 1e-5;
+/// The middle of an edge along a border is no farther from it than this share of the edge.
+const BEND: f64 = 0.3;
 
 /// A part that was closed.
 pub struct Closing {
@@ -99,7 +108,9 @@ impl Closing {
         (map, border): (&SphereMap, HalfedgeMap<bool>),
         progress: &Progress<'_>,
     ) -> Result<Opening, Cancelled> {
-        let edges = Marked::new(&self.closed.mesh, &self.closed.border());
+        let on_border = self.closed.border();
+        let edges = Marked::new(&self.closed.mesh, &on_border);
+        let lines = feature_lines(&self.closed.mesh, &on_border);
         let is_real = self.closed.is_real;
         let faces = self.closed.mesh.face_ids();
         let real = faces.filter(|&f| is_real[f]);
@@ -107,9 +118,11 @@ impl Closing {
         let real = TriangleMesh::of_faces(self.closed.mesh.positions(), real);
         let (bare, _) = real.expect("the real faces of a closed part are a mesh");
         Ok(Opening {
+            corners: corners(&self.closed.mesh, &lines),
             lines: feature_lines(map.mesh(), &border),
             small: border,
             edges,
+            is_simple: self.closed.n_doubled == 0,
             is_real,
             bare: Target::new(bare, progress)?,
         })
@@ -123,8 +136,66 @@ pub struct Opening {
     pub lines: Vec<FeatureLine>,
     /// Where they lie on the target.
     pub edges: Marked,
+    /// Whether no side lies on another.
+    pub is_simple: bool,
+    /// Their corners there.
+    corners: Vec<DVec3>,
     /// Which faces of the target are real.
     is_real: FaceMap<bool>,
     /// The real part of the target alone.
     pub bare: Target,
+}
+
+impl Opening {
+    /// Holds the edges of a primitive that were made along borders, on the target's: corners of the
+    /// map's mesh on its corners.
+    ///
+    /// # Errors
+    /// Where an edge is missing; when cancelled.
+    pub fn held(
+        &self,
+        map: &SphereMap,
+        made: &Adaptive,
+        progress: &Progress<'_>,
+    ) -> Result<Held, Error> {
+        if made.n_apart > 0 {
+            let reason = format!("{} edges along its borders could not be made", made.n_apart);
+            return Err(Error::Unopened { reason });
+        }
+        let border = self.edges.tree(progress)?;
+        let corners = (!self.corners.is_empty()).then(|| Bvh::of_points(&self.corners));
+        let ends: Vec<DVec3> = self::corners(map.mesh(), &self.lines);
+        let own = Marked::new(map.mesh(), &self.small).tree(progress)?;
+        let at = |v: VertexId| map.surface_position(map.locate(made.primitive.position(v)));
+        // Of a solid's lines not all are borders.
+        let lies = |p: DVec3, within: f64| own.closest(p).distance_squared <= within * within;
+        let is_border = |[a, b]: &&[VertexId; 2]| {
+            let [a, b] = [*a, *b].map(at);
+            let bend = BEND * a.distance(b);
+            lies(a, SAME) && lies(b, SAME) && lies(a.midpoint(b), bend)
+        };
+        let edges: Vec<[VertexId; 2]> = made.on_lines.iter().filter(is_border).copied().collect();
+        let mut vertices: Vec<VertexId> = edges.iter().flatten().copied().collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let place = |v: VertexId| {
+            let p = at(v);
+            let is_end = ends.iter().any(|end| end.distance_squared(p) < SAME * SAME);
+            match &corners {
+                Some(corners) if is_end => corners.closest(p).position,
+                _ => border.closest(p).position,
+            }
+        };
+        Ok(Held {
+            goals: vertices.into_iter().map(|v| (v, place(v))).collect(),
+            edges,
+        })
+    }
+}
+
+/// Where lines that do not go round begin and end.
+fn corners(mesh: &TriangleMesh, lines: &[FeatureLine]) -> Vec<DVec3> {
+    let open = lines.iter().filter(|line| !line.is_closed());
+    let ends = open.flat_map(|line| [line.vertices[0], line.vertices[line.vertices.len() - 1]]);
+    ends.map(|v| mesh.position(v)).collect()
 }

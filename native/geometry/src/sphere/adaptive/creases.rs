@@ -87,22 +87,38 @@ impl Creases {
         places
     }
 
-    /// Puts the places into a net and fixes what joins them; returns which vertices they are.
-    pub fn insert(&self, net: &mut Net) -> Vec<VertexId> {
+    /// Puts the places into a net and fixes what joins them.
+    pub fn insert(&self, net: &mut Net) -> Inserted {
         let names: Vec<Option<VertexId>> = self
             .places
             .iter()
             .map(|&place| insert_exactly(net, place))
             .collect();
+        let mut edges = Vec::with_capacity(self.pairs.len());
         for pair in &self.pairs {
             if let [Some(a), Some(b)] = pair.map(|i| names[i])
                 && join(net, [a, b])
             {
                 net.keep_edge(a, b);
+                edges.push([a.min(b), a.max(b)]);
             }
         }
-        names.into_iter().flatten().collect()
+        edges.sort_unstable();
+        Inserted {
+            vertices: names.into_iter().flatten().collect(),
+            n_apart: self.pairs.len() - edges.len(),
+            edges,
+        }
     }
+}
+
+/// Places in a net.
+pub struct Inserted {
+    pub vertices: Vec<VertexId>,
+    /// The edges that join neighbours on a line, each once, smaller end first, in order.
+    pub edges: Vec<[VertexId; 2]>,
+    /// How many neighbours could not be joined.
+    pub n_apart: usize,
 }
 
 /// How long the edges of even triangles are where the density is 1.

@@ -59,6 +59,10 @@ pub struct Report {
 pub struct Adaptive {
     /// Triangles with vertices on the unit sphere; they are even on the surface, not there.
     pub primitive: PolygonMesh,
+    /// Its edges along lines, each once, smaller end first, in order.
+    pub on_lines: Vec<[VertexId; 2]>,
+    /// How many neighbours on a line no edge could join.
+    pub n_apart: usize,
     /// What was done.
     pub report: Report,
 }
@@ -116,11 +120,11 @@ pub fn sized(
     let n_free = n_vertices.saturating_sub(4 + creases.places.len());
     let places = creases.clear(map, sample::sample(map, density, n_free, &mut random));
     let mut net = Net::tetrahedron(map);
-    let fixed = creases.insert(&mut net);
+    let creases::Inserted { vertices, edges, n_apart } = creases.insert(&mut net);
     let part = progress.part("", 0.0, 0.3);
     scatter(&mut net, &places, &mut random, &part)?;
     let mut is_fixed = VertexMap::filled(net.n_vertices(), false);
-    for v in fixed {
+    for v in vertices {
         is_fixed[v] = true;
     }
     let mut report = Report::default();
@@ -141,7 +145,12 @@ pub fn sized(
     debug_assert_eq!(check_cover(&primitive, primitive.positions()), Ok(()));
     report.n_vertices = primitive.n_vertices();
     report.n_faces = primitive.n_faces();
-    Ok(Adaptive { primitive, report })
+    Ok(Adaptive {
+        primitive,
+        on_lines: edges,
+        n_apart,
+        report,
+    })
 }
 
 /// Joins places, and what is there, by their Delaunay triangulation on the sphere.
