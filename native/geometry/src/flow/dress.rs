@@ -13,7 +13,6 @@ use super::singularities::tidy;
 use super::wish::wish;
 use crate::measure::{sharp_edges, total_area};
 use crate::mesh::{FaceMap, HalfedgeMap, TriangleMesh};
-use crate::mirror::Doubled;
 use crate::progress::Progress;
 
 /// What a surface wears before it is made flat.
@@ -62,16 +61,6 @@ pub(super) fn dress(
         .halfedge_ids()
         .map(|h| all[h] && !guides.marked[h] && !is_firm(h))
         .collect();
-    let part = progress.part("", 0.0, 0.5);
-    let mut field = field::orient_along(mesh, (&pull, &along), &part)?;
-    let mirror = |field: &mut OrientationField| {
-        if let Some(doubled) = guides.mirror {
-            straighten(field, doubled, sizes);
-        }
-    };
-    mirror(&mut field);
-    tidy(mesh, &mut field, sizes);
-    mirror(&mut field);
     let firm = match settings.creases {
         Creases::All => Some(all.clone()),
         Creases::Long => guides.firm.cloned(),
@@ -84,6 +73,17 @@ pub(super) fn dress(
         (Some(_), _) if settings.creases == Creases::All => return Err(Error::NoSolid),
         _ => None,
     };
+    let part = progress.part("", 0.0, 0.5);
+    let mut field = field::orient_along(mesh, (&pull, &along), &part)?;
+    let corners = network.as_ref().filter(|_| settings.creases == Creases::Long);
+    let mirror = |field: &mut OrientationField| {
+        if let Some(doubled) = guides.mirror {
+            straighten(field, doubled, (sizes, corners));
+        }
+    };
+    mirror(&mut field);
+    tidy(mesh, &mut field, sizes);
+    mirror(&mut field);
     let h = (total_area(mesh) / settings.n_quads.max(1) as f64).sqrt();
     let lines = creases::lines(mesh, &field, &along, h).into_iter();
     let on_lines = lines.map(|line| line.length_of(mesh, |h| sharp[*h])).sum();
@@ -105,7 +105,7 @@ pub(super) fn dress(
     field::settle_along(mesh, &mut field, (&pull, &along), &part)?;
     mirror(&mut field);
     let wish = wish(mesh, &field, sizes, &progress.part("", 0.7, 1.0))?;
-    let plan = |lines| planned(guides.mirror, &field, lines);
+    let plan = |lines| planned(guides, &field, lines);
     let plans = if settings.creases == Creases::All {
         vec![plan(creases::whole_lines(mesh, &field, &along, h)).firm()]
     } else {
@@ -151,9 +151,9 @@ fn lines_of(
 }
 
 /// What to keep to with some lines of sharp edges.
-fn planned(mirror: Option<&Doubled>, field: &OrientationField, beside: Vec<Line>) -> Plan {
-    match mirror {
-        Some(doubled) => plan(doubled, field, &beside),
+fn planned(guides: Guides<'_>, field: &OrientationField, beside: Vec<Line>) -> Plan {
+    match guides.mirror {
+        Some(doubled) => plan((doubled, guides.firm), field, &beside),
         None => Plan {
             plane: Vec::new(),
             beside,

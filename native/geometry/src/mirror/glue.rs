@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::cut::{Side, positive_side};
-use super::{DoubleError, Doubled, mirrored};
+use super::{DoubleError, Doubled, Reflection};
 use crate::groups::Groups;
 use crate::mesh::{FaceId, HalfedgeId, HalfedgeMap, Id, TriangleMesh, VertexId};
 
@@ -17,7 +17,7 @@ use crate::mesh::{FaceId, HalfedgeId, HalfedgeMap, Id, TriangleMesh, VertexId};
 /// [`DoubleError`].
 pub fn double(mesh: &TriangleMesh, axis: usize, snap: f64) -> Result<Doubled, DoubleError> {
     let (half, sources) = disc(&positive_side(mesh, (axis, snap), None))?;
-    glue(&half, sources, axis)
+    glue(&half, sources, Reflection::Across(axis))
 }
 
 /// The same of a closed mesh with lines, whose vertices stay on them; marked on both sides of each.
@@ -30,17 +30,36 @@ pub fn double_along(
     (axis, snap): (usize, f64),
 ) -> Result<Doubled, DoubleError> {
     let (half, sources) = disc(&positive_side(mesh, (axis, snap), Some(lines)))?;
-    glue(&half, sources, axis)
+    glue(&half, sources, Reflection::Across(axis))
+}
+
+/// A sheet without holes and its other side, glued along its border; of its vertices the names in
+/// another mesh are given.
+///
+/// # Errors
+/// [`DoubleError`].
+pub fn double_sheet(sheet: &TriangleMesh, names: &[VertexId]) -> Result<Doubled, DoubleError> {
+    let mut sources = names.iter().map(|&v| [v, v]).collect();
+    let sheet = checked_disc(sheet.clone(), &mut sources)?;
+    glue(&sheet, sources, Reflection::Onto)
 }
 
 /// The largest piece of a side, if it is a disc; no inner edge joins two vertices of its border.
 fn disc(side: &Side) -> Result<(TriangleMesh, Vec<[VertexId; 2]>), DoubleError> {
     let (piece, mut sources) = largest_piece(side)?;
+    Ok((checked_disc(piece, &mut sources)?, sources))
+}
+
+/// A piece that is a disc, without chords.
+fn checked_disc(
+    piece: TriangleMesh,
+    sources: &mut Vec<[VertexId; 2]>,
+) -> Result<TriangleMesh, DoubleError> {
     let loops = piece.border_loops();
     let euler = piece.euler_number();
     match loops.len() {
         0 => Err(DoubleError::NotCut),
-        1 if euler == 1 => Ok((without_chords(piece, &mut sources)?, sources)),
+        1 if euler == 1 => without_chords(piece, sources),
         n_loops => Err(DoubleError::NotADisc { n_loops, euler }),
     }
 }
@@ -119,17 +138,19 @@ fn without_chords(
 fn glue(
     half: &TriangleMesh,
     sources: Vec<[VertexId; 2]>,
-    axis: usize,
+    reflection: Reflection,
 ) -> Result<Doubled, DoubleError> {
     let mut positions: Vec<DVec3> = half.positions().to_vec();
     let mut images: Vec<VertexId> = half.vertex_ids().collect();
     for v in half.vertex_ids() {
         if half.is_border(v) {
-            positions[v.index()][axis] = 0.0;
+            if let Reflection::Across(axis) = reflection {
+                positions[v.index()][axis] = 0.0;
+            }
         } else {
             images[v.index()] = VertexId::from_index(positions.len());
             images.push(v);
-            positions.push(mirrored(half.position(v), axis));
+            positions.push(reflection.of(half.position(v)));
         }
     }
     let image = |face: FaceId| {
@@ -143,6 +164,6 @@ fn glue(
         images: images.into_iter().collect(),
         border: half.border_loops().remove(0),
         sources,
-        axis,
+        reflection,
     })
 }

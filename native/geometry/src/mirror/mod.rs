@@ -17,7 +17,7 @@ use crate::mesh::{
     FaceId, HalfedgeId, HalfedgeMap, Id, TriangleMesh, TriangleMeshError, VertexId, VertexMap,
 };
 
-pub use glue::{double, double_along};
+pub use glue::{double, double_along, double_sheet};
 
 /// A mesh that is its own image in a plane, and which element is whose image.
 ///
@@ -30,7 +30,27 @@ pub struct Doubled {
     border: Vec<HalfedgeId>,
     /// Of the vertices of the positive side, the ends of the edge of the old mesh where they lie.
     sources: Vec<[VertexId; 2]>,
-    axis: usize,
+    reflection: Reflection,
+}
+
+/// Where the image of a point is.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Reflection {
+    /// As far on the other side of the plane where a coordinate is 0: 0, 1 or 2.
+    Across(usize),
+    /// At the same place: the image of a sheet is its other side.
+    Onto,
+}
+
+impl Reflection {
+    /// The image of a point or vector.
+    #[must_use]
+    pub fn of(self, point: DVec3) -> DVec3 {
+        match self {
+            Self::Across(axis) => mirrored(point, axis),
+            Self::Onto => point,
+        }
+    }
 }
 
 /// Why one side of a plane cannot be closed by its image.
@@ -63,9 +83,9 @@ impl Doubled {
         self.mesh
     }
 
-    /// The axis across the plane: 0, 1 or 2.
-    pub fn axis(&self) -> usize {
-        self.axis
+    /// Where images are.
+    pub fn reflection(&self) -> Reflection {
+        self.reflection
     }
 
     /// The edges in the plane, a closed line with the positive side on its left.
@@ -165,7 +185,7 @@ mod tests {
         for v in mesh.vertex_ids() {
             let image = doubled.image(v);
             assert_eq!(doubled.image(image), v);
-            let there = mirrored(mesh.position(v), doubled.axis());
+            let there = doubled.reflection().of(mesh.position(v));
             assert_eq!(there, mesh.position(image));
         }
         for h in mesh.halfedge_ids() {

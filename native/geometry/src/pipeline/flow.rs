@@ -14,7 +14,7 @@ use crate::deform::{self, Flowing, Target};
 use crate::embed::{self, Covered};
 use crate::measure::FeatureLine;
 use crate::mesh::{HalfedgeMap, VertexMap};
-use crate::mirror::Doubled;
+use crate::mirror::{Doubled, Reflection};
 use crate::progress::{Cancelled, Progress};
 use crate::sphere;
 use crate::sphere_map::SphereMap;
@@ -142,17 +142,40 @@ pub fn along(
     };
     eprintln!("DBG even: lines {} border halfedges {:?} firm lines given {} solid {}", even_n(&ground.lines), ground.border.as_ref().map(even_n), borders.len(), lines.len());
     let part = progress.part("", 0.15, 1.0);
-    let found = match asked.axis {
-        Some(axis) => symmetric((ground, axis), budget, clock, &part),
+    let sheet = asked.opening.filter(|opening| opening.is_sheet());
+    let symmetry = match (sheet, asked.axis) {
+        (Some(sheet), _) => Some(Symmetry::OtherSide(sheet)),
+        (None, Some(axis)) => Some(Symmetry::Plane(axis)),
+        (None, None) => None,
+    };
+    let found = match symmetry {
+        Some(symmetry) => symmetric((ground, symmetry), budget, clock, &part),
         None => ground.best(budget, clock, &part),
     }?;
+    let of_sheet = "it is a sheet, whose sides are each other's images".to_owned();
+    let found = found.map(|found| match (sheet, asked.axis) {
+        (Some(_), axis) => FlowedPart {
+            mirrored: axis.map(|_| Err(of_sheet)),
+            ..found
+        },
+        _ => found,
+    });
     Ok(found.map(|found| found.found_in(budget.n_attempts)))
+}
+
+/// Of what quads shall be the images of each other.
+#[derive(Clone, Copy)]
+enum Symmetry<'a> {
+    /// Of what lies on the other side of the plane across an axis.
+    Plane(usize),
+    /// Of what is virtual of a sheet: so its border is a line of edges, whatever the flow is.
+    OtherSide(&'a Opening),
 }
 
 /// Quads that are their own image, or the usual ones where these cannot be or miss less of the
 /// surface.
 fn symmetric(
-    (mut ground, axis): (Ground<'_>, usize),
+    (mut ground, symmetry): (Ground<'_>, Symmetry<'_>),
     budget: &mut Budget,
     clock: &mut Clock,
     progress: &Progress<'_>,
@@ -160,7 +183,15 @@ fn symmetric(
     let part = progress.part("sphere", 0.0, 0.05);
     let found = clock.step("sphere", || {
         let lines = ground.keeps_lines().then_some(&ground.lines);
-        told(mirror::symmetric((&ground.even, lines), axis, &part))
+        told(match (symmetry, &ground.border) {
+            (Symmetry::OtherSide(sheet), Some(border)) => {
+                sheet.doubled((&ground.even, border), ground.target, &part)
+            }
+            (Symmetry::OtherSide(_), None) => Ok(Err("it has no borders".to_owned())),
+            (Symmetry::Plane(axis), _) => {
+                mirror::symmetric((&ground.even, lines), axis, &part)
+            }
+        })
     })?;
     let mut symmetric = None;
     let reason = match found.flatten() {
@@ -317,17 +348,18 @@ impl Ground<'_> {
             evenness: self.evenness(),
             is_on_lines: self.keeps_lines(),
             // What is virtual may lie on what is real.
-            separates: self.asked.opening.is_none_or(|opening| opening.is_simple),
+            separates: self.asked.opening.is_none_or(|opening| !opening.is_sheet()),
             ..deform::Settings::default()
         };
         let fit = || deform::deform_flow(&self.even, flowing, self.target, &settings, &part);
         let deformed = clock.step("deform", || told(fit().map_err(pipeline::Error::from)))?;
         let mirrored = found.images.as_deref().zip(self.doubled.as_ref());
-        let evened = |deformed| match mirrored {
-            Some((images, doubled)) => {
-                mirror::even_out(&deformed, images, doubled.axis(), self.target)
+        let evened = |deformed| match mirrored.map(|(images, of)| (images, of.reflection())) {
+            Some((images, Reflection::Across(axis))) => {
+                mirror::even_out(&deformed, images, axis, self.target)
             }
-            None => deformed,
+            // Of a sheet one side alone is kept.
+            Some((_, Reflection::Onto)) | None => deformed,
         };
         let deformed = match deformed.map(evened) {
             Ok(deformed) => deformed,

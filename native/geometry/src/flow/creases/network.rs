@@ -98,6 +98,11 @@ impl<'a> Network<'a> {
         })
     }
 
+    /// The index that belongs at a vertex, where it is a crease's.
+    pub fn index(&self, v: VertexId) -> Option<i32> {
+        self.indices[v]
+    }
+
     /// Moves singularities to the corners that want them and into the patches that do, on the
     /// shortest ways; in a symmetric field those of the positive side alone. Turns, residuals and
     /// indices change, directions do not. O(n) for every unit that moves.

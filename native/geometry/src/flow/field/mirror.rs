@@ -9,7 +9,7 @@ use super::shape::{axes, in_chart};
 use super::{OrientationField, turns};
 use crate::elementary::argument;
 use crate::mesh::{HalfedgeId, Id};
-use crate::mirror::{Doubled, mirrored};
+use crate::mirror::Doubled;
 
 /// Makes the crosses of the negative side the images of those of the positive one.
 ///
@@ -20,7 +20,7 @@ pub fn mirror(field: &mut OrientationField, doubled: &Doubled) {
     let positive = mesh.face_ids().take(mesh.n_faces() / 2);
     for face in positive {
         let image = doubled.image_of_face(face);
-        field.directions[image] = mirrored(field.directions[face], doubled.axis());
+        field.directions[image] = doubled.reflection().of(field.directions[face]);
     }
     for h in mesh.halfedge_ids().take(3 * (mesh.n_faces() / 2)) {
         let image = doubled.image_of_halfedge(h);

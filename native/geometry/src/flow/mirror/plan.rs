@@ -74,15 +74,22 @@ impl Plan {
 /// Plans the lines of a field that is its own image; of the creases given those of the positive
 /// side and their images are kept.
 ///
-/// The plane's line is cut at singularities and where creases end in it; where there is none of
+/// Pieces of the plane's line have to be met where they are `firm`. The plane's line is cut at singularities and where creases end in it; where there is none of
 /// either a vertex far from all singularities is chosen. Costs a search over half of the mesh.
-pub fn plan(doubled: &Doubled, field: &OrientationField, creases: &[Line]) -> Plan {
+pub fn plan(
+    (doubled, firm): (&Doubled, Option<&HalfedgeMap<bool>>),
+    field: &OrientationField,
+    creases: &[Line],
+) -> Plan {
     let beside = both_sides(doubled, creases);
     let mut is_kept: VertexMap<bool> = field.indices.iter().map(|&k| k != 0).collect();
     for &end in beside.iter().flat_map(|line| &line.ends) {
         is_kept[end] = true;
     }
-    let plane = plane(doubled, &mut is_kept);
+    let mut plane = plane(doubled, &mut is_kept);
+    for line in &mut plane {
+        line.is_firm = firm.is_some_and(|firm| firm[line.halfedges[0]]);
+    }
     let pairs = ways(doubled, &is_kept)
         .into_iter()
         .map(|path| Pair {

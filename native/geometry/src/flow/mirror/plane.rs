@@ -1,5 +1,6 @@
 //! Singularities in the plane.
 
+use crate::flow::creases::Network;
 use crate::flow::field::{self, OrientationField};
 use crate::flow::singularities::{Reach, shift};
 use crate::mesh::FaceMap;
@@ -12,14 +13,19 @@ const FARTHEST: f64 = 3.0;
 
 /// Makes a field its own image, with no singularities in the plane but vertices of valence 6.
 ///
-/// What else lies in the plane after mirroring goes to both sides in equal parts, where the mesh
-/// has room. Directions near by do not agree with the turns then, as after `tidy`.
-pub fn straighten(field: &mut OrientationField, doubled: &Doubled, sizes: &FaceMap<f64>) {
+/// A corner of a network in the plane keeps its index. What else lies in the plane after mirroring
+/// goes to both sides in equal parts, where the mesh has room. Directions near by do not agree with the turns then, as after `tidy`.
+pub fn straighten(
+    field: &mut OrientationField,
+    doubled: &Doubled,
+    (sizes, network): (&FaceMap<f64>, Option<&Network<'_>>),
+) {
     field::mirror(field, doubled);
     let mesh = doubled.mesh();
     let mut reach = Reach::new(mesh, sizes);
     for v in doubled.border().iter().map(|&h| mesh.origin(h)) {
-        let index = field.indices[v];
+        let wanted = network.and_then(|network| network.index(v)).unwrap_or(0);
+        let index = field.indices[v] - wanted;
         let unit = index.signum();
         let n = if index > 0 {
             index / 2

@@ -11,12 +11,16 @@ mod reopen;
 use glam::DVec3;
 
 use super::even::Marked;
+use super::part::embed_mesh;
 use super::{Error, Settings};
 use crate::close::{self, Closed};
 use crate::decimate;
 use crate::deform::{Held, Target};
 use crate::measure::{FeatureLine, feature_lines};
-use crate::mesh::{FaceMap, HalfedgeMap, TriangleMesh, VertexId};
+use crate::embed::Solver;
+use crate::groups::Groups;
+use crate::mesh::{FaceMap, HalfedgeId, HalfedgeMap, Id, TriangleMesh, VertexId};
+use crate::mirror::{Doubled, double_sheet};
 use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
 use crate::sphere::Adaptive;
@@ -111,6 +115,7 @@ impl Closing {
         let on_border = self.closed.border();
         let edges = Marked::new(&self.closed.mesh, &on_border);
         let lines = feature_lines(&self.closed.mesh, &on_border);
+        let folds = Marked::new(&self.closed.mesh, &folds(&self.closed));
         let is_real = self.closed.is_real;
         let faces = self.closed.mesh.face_ids();
         let real = faces.filter(|&f| is_real[f]);
@@ -122,7 +127,7 @@ impl Closing {
             lines: feature_lines(map.mesh(), &border),
             small: border,
             edges,
-            is_simple: self.closed.n_doubled == 0,
+            folds,
             is_real,
             bare: Target::new(bare, progress)?,
         })
@@ -136,8 +141,8 @@ pub struct Opening {
     pub lines: Vec<FeatureLine>,
     /// Where they lie on the target.
     pub edges: Marked,
-    /// Whether no side lies on another.
-    pub is_simple: bool,
+    /// Where a sheet is glued to its other side; empty where there is no other side.
+    folds: Marked,
     /// Their corners there.
     corners: Vec<DVec3>,
     /// Which faces of the target are real.
@@ -147,6 +152,54 @@ pub struct Opening {
 }
 
 impl Opening {
+    /// Whether a side lies on another.
+    pub fn is_sheet(&self) -> bool {
+        !self.folds.is_empty()
+    }
+
+    /// An even surface made its own other side exactly, from the side that is real.
+    ///
+    /// # Errors
+    /// When cancelled; the text of the inner error is why that cannot be.
+    pub fn doubled(
+        &self,
+        (map, border): (&SphereMap, &HalfedgeMap<bool>),
+        target: &Target,
+        progress: &Progress<'_>,
+    ) -> Result<Result<(SphereMap, Doubled), String>, Error> {
+        let mesh = map.mesh();
+        let folds = self.folds.tree(progress)?;
+        let lies = |v| folds.closest(mesh.position(v)).distance_squared < SAME * SAME;
+        let is_fold = |h| border[h] && lies(mesh.origin(h)) && lies(mesh.target(h));
+        let mut groups = Groups::new(mesh.n_faces());
+        for h in mesh.halfedge_ids() {
+            if let Some(twin) = mesh.twin(h).filter(|_| !is_fold(h)) {
+                groups.link(h.face().index(), twin.face().index());
+            }
+        }
+        let (side, n_sides) = groups.numbered();
+        if n_sides != 2 {
+            return Ok(Err(format!("the even surface has {n_sides} sides, not two")));
+        }
+        let mut votes = [0.0; 2];
+        for face in mesh.face_ids() {
+            votes[side[face.index()] as usize] += self.vote(&mesh.triangle(face), target);
+        }
+        let front = u32::from(votes[1] > votes[0]);
+        let own = mesh.face_ids().filter(|face| side[face.index()] == front);
+        let own = own.map(|face| mesh.face(face));
+        let (half, names) = match TriangleMesh::of_faces(mesh.positions(), own) {
+            Ok(half) => half,
+            Err(error) => return Ok(Err(error.to_string())),
+        };
+        let doubled = match double_sheet(&half, &names) {
+            Ok(doubled) => doubled,
+            Err(error) => return Ok(Err(error.to_string())),
+        };
+        let embedded = embed_mesh(doubled.mesh().clone(), &Solver::default(), progress)?;
+        Ok(Ok((embedded.map, doubled)))
+    }
+
     /// Holds the edges of a primitive that were made along borders, on the target's: corners of the
     /// map's mesh on its corners.
     ///
@@ -191,6 +244,16 @@ impl Opening {
             edges,
         })
     }
+}
+
+/// The edges of a closed part between a face and its own other side, on both sides of each.
+fn folds(closed: &Closed) -> HalfedgeMap<bool> {
+    let (mesh, border) = (&closed.mesh, closed.border());
+    let apex = |h: HalfedgeId| mesh.position(mesh.origin(h.prev()));
+    let is_fold = |h: HalfedgeId| {
+        border[h] && mesh.twin(h).is_some_and(|twin| apex(h) == apex(twin))
+    };
+    mesh.halfedge_ids().map(is_fold).collect()
 }
 
 /// Where lines that do not go round begin and end.

@@ -8,7 +8,7 @@ use super::Opening;
 use crate::deform::{Deformed, Target};
 use crate::groups::Groups;
 use crate::measure::{PolygonEdges, area_vector, topology, topology_of_triangles};
-use crate::mesh::{FaceId, PolygonMesh, VertexId};
+use crate::mesh::{PolygonMesh, VertexId};
 use crate::progress::{Cancelled, Progress};
 
 impl Opening {
@@ -29,7 +29,8 @@ impl Opening {
         let (patches, n_patches) = patches(mesh, border, progress)?;
         let mut votes = vec![0.0; n_patches];
         for (face, &patch) in mesh.face_ids().zip(&patches) {
-            votes[patch as usize] += self.vote(mesh, face, target);
+            let corners: Vec<DVec3> = mesh.face(face).iter().map(|&v| mesh.position(v)).collect();
+            votes[patch as usize] += self.vote(&corners, target);
         }
         eprintln!("DBG reopen: border edges {} patches {} votes {:?} bare {:?}", border.len(), n_patches, &votes[..votes.len().min(12)], topology_of_triangles(self.bare.mesh()));
         let is_kept: Vec<bool> = patches.iter().map(|&p| votes[p as usize] > 0.0).collect();
@@ -54,8 +55,7 @@ impl Opening {
     }
 
     /// The area of a face, less than zero if it lies on what is virtual.
-    fn vote(&self, mesh: &PolygonMesh, face: FaceId, target: &Target) -> f64 {
-        let corners: Vec<DVec3> = mesh.face(face).iter().map(|&v| mesh.position(v)).collect();
+    pub(super) fn vote(&self, corners: &[DVec3], target: &Target) -> f64 {
         let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
         let halves = (2..corners.len()).map(|i| area_vector([corners[0], corners[i - 1], corners[i]]));
         let area = halves.sum::<DVec3>();
