@@ -14,6 +14,8 @@ pub struct Settings {
     /// they are set onto them before anything slides. Those of quads that flow are set onto their lines
     /// whatever is in the way, and spread evenly along bent ones.
     pub is_on_lines: bool,
+    /// Whether vertices of quads that flow get onto their lines whatever that does to their faces.
+    pub forces_lines: bool,
     /// How often every vertex of a mesh of triangles slides. Fewer leave uneven faces, more cost
     /// time for little.
     pub n_relaxations: usize,
@@ -56,6 +58,7 @@ impl Default for Settings {
         Self {
             sizes: Sizes::Equal,
             is_on_lines: false,
+            forces_lines: false,
             n_relaxations: 4,
             n_quad_relaxations: 0,
             n_flow_relaxations: 40,

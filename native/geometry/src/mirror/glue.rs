@@ -119,7 +119,12 @@ fn without_chords(
         let [a, b] = [mesh.origin(h), mesh.target(h)];
         let middle = VertexId::from_index(positions.len());
         positions.push(mesh.position(a).midpoint(mesh.position(b)));
-        sources.push(sources[a.index()]);
+        let source = match [a, b].map(|v| sources[v.index()]) {
+            [[a, p], [b, q]] if a == p && b == q => [a, b],
+            // The end of one that lies on an edge itself stands for it.
+            [first, _] => first,
+        };
+        sources.push(source);
         for i in 0..faces.len() {
             let Some(k) = (0..3).find(|&k| {
                 let ends = [faces[i][k], faces[i][(k + 1) % 3]];

@@ -194,6 +194,7 @@ fn symmetric(
         })
     })?;
     let mut symmetric = None;
+    eprintln!("DBG symmetry: {:?}", found.as_ref().map(|f| f.as_ref().map(|_| ()).map_err(|e| e.clone())));
     let reason = match found.flatten() {
         Ok((even, doubled)) => {
             let usual = ground.doubled(even, doubled);
@@ -347,6 +348,7 @@ impl Ground<'_> {
         let settings = deform::Settings {
             evenness: self.evenness(),
             is_on_lines: self.keeps_lines(),
+            forces_lines: self.asked.opening.is_some(),
             // What is virtual may lie on what is real.
             separates: self.asked.opening.is_none_or(|opening| !opening.is_sheet()),
             ..deform::Settings::default()

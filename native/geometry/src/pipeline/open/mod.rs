@@ -29,7 +29,7 @@ use crate::sphere_map::SphereMap;
 /// Places nearer to each other than this share of the diagonal are one.
 const SAME: f64 = 1e-5;
 /// The middle of an edge along a border is no farther from it than this share of the edge.
-const BEND: f64 = 0.3;
+const BEND: f64 = 0.5;
 
 /// A part that was closed.
 pub struct Closing {
@@ -178,6 +178,7 @@ impl Opening {
             }
         }
         let (side, n_sides) = groups.numbered();
+        if n_sides != 99 { let nb = mesh.halfedge_ids().filter(|&h| border[h]).count(); let nf = mesh.halfedge_ids().filter(|&h| is_fold(h)).count(); eprintln!("DBG border {nb} folds {nf} far {:?}", mesh.halfedge_ids().filter(|&h| border[h]).map(|h| folds.closest(mesh.position(mesh.origin(h))).distance_squared.sqrt()).fold(0.0, f64::max)); }
         if n_sides != 2 {
             return Ok(Err(format!("the even surface has {n_sides} sides, not two")));
         }
@@ -228,6 +229,7 @@ impl Opening {
             lies(a, SAME) && lies(b, SAME) && lies(a.midpoint(b), bend)
         };
         let edges: Vec<[VertexId; 2]> = made.on_lines.iter().filter(is_border).copied().collect();
+        eprintln!("DBG held {} of {}; off {:?}", edges.len(), made.on_lines.len(), made.on_lines.iter().filter(|e| !edges.contains(e)).map(|&[a,b]| { let [a,b]=[a,b].map(at); (own.closest(a).distance_squared.sqrt(), own.closest(b).distance_squared.sqrt(), own.closest(a.midpoint(b)).distance_squared.sqrt()/a.distance(b)) }).take(6).collect::<Vec<_>>());
         let mut vertices: Vec<VertexId> = edges.iter().flatten().copied().collect();
         vertices.sort_unstable();
         vertices.dedup();
@@ -246,13 +248,23 @@ impl Opening {
     }
 }
 
-/// The edges of a closed part between a face and its own other side, on both sides of each.
+/// The borders of a closed part across which it was doubled, on both sides of each edge: there most
+/// faces have their own images beyond; not all, for some were split.
 fn folds(closed: &Closed) -> HalfedgeMap<bool> {
     let (mesh, border) = (&closed.mesh, closed.border());
     let apex = |h: HalfedgeId| mesh.position(mesh.origin(h.prev()));
-    let is_fold = |h: HalfedgeId| {
-        border[h] && mesh.twin(h).is_some_and(|twin| apex(h) == apex(twin))
-    };
+    let mut groups = Groups::new(mesh.n_vertices());
+    for h in mesh.halfedge_ids().filter(|&h| border[h]) {
+        groups.link(mesh.origin(h).index(), mesh.target(h).index());
+    }
+    let (group, n_groups) = groups.numbered();
+    let of = |h: HalfedgeId| group[mesh.origin(h).index()] as usize;
+    let mut votes = vec![0_i64; n_groups];
+    for h in mesh.halfedge_ids().filter(|&h| border[h]) {
+        let is_image = mesh.twin(h).is_some_and(|twin| apex(h) == apex(twin));
+        votes[of(h)] += if is_image { 1 } else { -1 };
+    }
+    let is_fold = |h| border[h] && votes[of(h)] > 0;
     mesh.halfedge_ids().map(is_fold).collect()
 }
 
