@@ -89,3 +89,6 @@ impl<'a> Sheet<'a> {
         chords
     }
 }
+
+#[cfg(test)]
+mod tests;

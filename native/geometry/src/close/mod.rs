@@ -38,6 +38,21 @@ use crate::progress::{Cancelled, Progress};
 pub struct Settings {
     /// Which borders are closed for good.
     pub fill: Fill,
+    /// What is done with the longest of the other borders.
+    pub way: Way,
+}
+
+/// What is done with the longest border that is not filled; the others get caps in any case.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Way {
+    /// Sheets are doubled across it, others get a cap.
+    #[default]
+    Measured,
+    /// It gets a cap.
+    Cap,
+    /// The mesh is doubled across it. A single triangle gets a cap: its image would have the same
+    /// three corners.
+    Double,
 }
 
 /// Which borders are closed for good: their caps count as real faces.
@@ -135,7 +150,7 @@ pub fn close(
     let mut n_doubled = 0;
     if let Some(border) = longest {
         progress.at(0.6)?;
-        if is_doubled(&sheet, &border) {
+        if is_doubled(&sheet, &border, settings.way) {
             sheet.double(&border, progress)?;
             n_doubled = 1;
         } else {
@@ -200,11 +215,16 @@ fn take_longest(mesh: &TriangleMesh, loops: &mut Vec<Vec<HalfedgeId>>) -> Option
 const SHEET: f64 = 0.6;
 
 /// Whether a mesh, with caps on all of its loops but the longest, is doubled across that.
-fn is_doubled(sheet: &Sheet, border: &[HalfedgeId]) -> bool {
-    // The image of a single triangle would have the same three corners.
-    if sheet.faces.len() == 1 {
-        return false;
-    }
+fn is_doubled(sheet: &Sheet, border: &[HalfedgeId], way: Way) -> bool {
+    sheet.mesh.n_faces() > 1
+        && match way {
+            Way::Measured => is_sheet(sheet, border),
+            Way::Cap => false,
+            Way::Double => true,
+        }
+}
+
+fn is_sheet(sheet: &Sheet, border: &[HalfedgeId]) -> bool {
     let frame = Frame::of(&sheet.positions);
     let at = |v: VertexId| frame.inside(sheet.positions[v.index()]);
     let edges = border.iter().map(|&h| sheet.ends(h).map(at));
