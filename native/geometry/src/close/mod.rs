@@ -140,7 +140,7 @@ pub fn close(
         progress.at(0.3 * i as f64 / filled.len() as f64)?;
         sheet.cap(border, progress)?;
     }
-    let n_real = sheet.faces.len();
+    sheet.n_real = sheet.faces.len();
     let longest = take_longest(mesh, &mut open);
     for (i, border) in open.iter().enumerate() {
         progress.at(0.3 + 0.3 * i as f64 / open.len() as f64)?;
@@ -162,7 +162,7 @@ pub fn close(
     let n_faces = sheet.faces.len();
     Ok(Closed {
         mesh: TriangleMesh::build(sheet.positions, sheet.faces, progress)??,
-        is_real: (0..n_faces).map(|i| i < n_real).collect(),
+        is_real: (0..n_faces).map(|i| i < sheet.n_real).collect(),
         n_filled: filled.len(),
         n_capped,
         n_doubled,
@@ -233,10 +233,10 @@ fn is_sheet(sheet: &Sheet, border: &[HalfedgeId]) -> bool {
         let [a, b, c] = face.map(at);
         (b - a).cross(c - a).length() / 2.0
     };
-    let (given, added) = sheet.faces.split_at(sheet.mesh.n_faces());
-    let [given, added] = [given, added].map(|faces| faces.iter().map(area).sum::<f64>());
+    let (real, caps) = sheet.faces.split_at(sheet.n_real);
+    let [real, caps] = [real, caps].map(|faces| faces.iter().map(area).sum::<f64>());
     let circle = around * around / (4.0 * std::f64::consts::PI);
-    circle - added > SHEET * given
+    circle - caps > SHEET * real
 }
 
 #[cfg(test)]

@@ -47,7 +47,9 @@ fn thin_out(mesh: &TriangleMesh, is_kept: &mut [bool]) {
         let n_ends =
             (0..fan.len()).filter(|&i| is_kept[fan[i]] && !is_kept[fan[(i + 1) % fan.len()]]);
         if n_ends.count() > 1 {
-            fan.iter().for_each(|&f| is_kept[f] = false);
+            for f in fan {
+                is_kept[f] = false;
+            }
         }
     }
 }
@@ -92,7 +94,9 @@ fn check(mesh: &TriangleMesh, closed: &Closed) {
     assert!(closed.is_real.as_slice()[..n_real].iter().all(|real| *real));
     assert!(n_real >= mesh.n_faces());
     let mut corners: Vec<_> = made.faces().to_vec();
-    corners.iter_mut().for_each(|face| face.sort_unstable());
+    for face in &mut corners {
+        face.sort_unstable();
+    }
     corners.sort_unstable();
     assert!(corners.windows(2).all(|pair| pair[0] != pair[1]));
     let n_loops = mesh.border_loops().len();
@@ -209,6 +213,30 @@ fn sheets_are_doubled_and_vessels_are_capped() {
             assert!((twice / once - 2.0).abs() < 1e-12, "{i}");
         }
     }
+}
+
+#[test]
+fn a_plate_with_five_windows_is_doubled_and_they_are_closed_on_both_sides() {
+    let n = 12;
+    let position = |i: u32| DVec3::new(f64::from(i % (n + 1)), f64::from(i / (n + 1)), 0.0);
+    let positions: Vec<DVec3> = (0..(n + 1) * (n + 1)).map(position).collect();
+    let windows = [[2, 2], [2, 8], [8, 2], [8, 8], [5, 5]];
+    let is_solid = |[x, y]: &[u32; 2]| {
+        !windows
+            .iter()
+            .any(|[a, b]| (*a..a + 2).contains(x) && (*b..b + 2).contains(y))
+    };
+    let squares = (0..n).flat_map(|y| (0..n).map(move |x| [x, y]));
+    let faces = squares.filter(is_solid).flat_map(|[x, y]| {
+        let a = y * (n + 1) + x;
+        [[a, a + 1, a + n + 2], [a, a + n + 2, a + n + 1]].map(|face| face.map(VertexId))
+    });
+    let mesh = TriangleMesh::of_faces(&positions, faces).unwrap().0;
+    let closed = closed(&mesh, &Settings::default());
+    check(&mesh, &closed);
+    assert_eq!((closed.n_capped, closed.n_doubled), (5, 1));
+    let area = f64::from(n * n);
+    assert!((total_area(&closed.mesh) / area - 2.0).abs() < 1e-12);
 }
 
 #[test]
