@@ -1,4 +1,4 @@
-//! Makes triangles over a loop fine and smooth [liepa2003filling].
+//! Makes triangles over a loop fine and smooth (Liepa 2003).
 
 use glam::DVec3;
 
@@ -10,7 +10,8 @@ use crate::progress::{Cancelled, Progress};
 /// loop has twice the faces; with 0.5 half of them, and slivers where it grows coarser.
 const GRADE: f64 = 0.35;
 
-/// A face is split where its middle is farther from its corners than this times the length wanted.
+/// A face is split where its middle is farther from its corners than the length wanted over this.
+/// With less the outermost rows are slivers; with more faces are half as long as wanted.
 const ROOM: f64 = std::f64::consts::SQRT_2;
 
 /// The shortest length that is wanted, as a share of the loop's mean edge: vertices that lie on

@@ -23,8 +23,6 @@ mod patch;
 mod split;
 mod start;
 
-use thiserror::Error;
-
 use cap::Sheet;
 use frame::Frame;
 
@@ -68,7 +66,7 @@ pub enum Fill {
 }
 
 /// Why a mesh cannot be closed.
-#[derive(Clone, PartialEq, Debug, Error)]
+#[derive(Clone, PartialEq, Debug, thiserror::Error)]
 pub enum Error {
     /// It hangs together in more than one piece, or has no face.
     #[error("{n} components; one at a time can be closed")]
