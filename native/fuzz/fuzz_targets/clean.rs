@@ -1,11 +1,12 @@
 //! Any polygons over points of a small grid become a manifold mesh or an error; a second cleaning
-//! finds nothing to mend.
+//! finds nothing to mend, and what has no handles can be closed.
 #![no_main]
 
 use glam::DVec3;
 use libfuzzer_sys::fuzz_target;
 use orbflow_geometry::clean::{Report, clean};
-use orbflow_geometry::mesh::{Id, PolygonMesh};
+use orbflow_geometry::close::{self, Way, close};
+use orbflow_geometry::mesh::{Id, PolygonMesh, TriangleMesh};
 use orbflow_geometry::progress::Progress;
 
 fuzz_target!(|bytes: &[u8]| {
@@ -24,6 +25,7 @@ fuzz_target!(|bytes: &[u8]| {
             .iter()
             .all(|face| face.index() < mesh.n_faces())
     );
+    close_all(&cleaned.mesh);
     let faces: Vec<_> = cleaned
         .mesh
         .faces()
@@ -39,6 +41,26 @@ fuzz_target!(|bytes: &[u8]| {
         assert_eq!(again.report, Report::default());
     }
 });
+
+fn close_all(mesh: &TriangleMesh) {
+    let quiet = Progress::none();
+    for part in mesh.components(&quiet).expect("nobody cancels") {
+        for way in [Way::Measured, Way::Cap, Way::Double] {
+            let settings = close::Settings {
+                way,
+                ..close::Settings::default()
+            };
+            match close(&part, &settings, &quiet) {
+                Ok(closed) => {
+                    assert!(closed.mesh.is_closed());
+                    assert_eq!(closed.mesh.euler_number(), 2);
+                    assert_eq!(&closed.mesh.faces()[..part.n_faces()], part.faces());
+                }
+                Err(error) => assert!(matches!(error, close::Error::Handles { .. }), "{error}"),
+            }
+        }
+    }
+}
 
 fn all_different(points: &[DVec3]) -> bool {
     let mut sorted: Vec<_> = points

@@ -20,6 +20,8 @@ pub struct Sheet<'a> {
     pub mesh: &'a TriangleMesh,
     pub positions: Vec<DVec3>,
     pub faces: Vec<[VertexId; 3]>,
+    /// How many faces are real: those that were given and those that fill borders for good.
+    pub n_real: usize,
     /// The place of each vertex in the loop that is being closed.
     places: VertexMap<u32>,
 }
@@ -30,6 +32,7 @@ impl<'a> Sheet<'a> {
             mesh,
             positions: mesh.positions().to_vec(),
             faces: mesh.faces().to_vec(),
+            n_real: mesh.n_faces(),
             places: VertexMap::filled(mesh.n_vertices(), NONE),
         }
     }
@@ -89,3 +92,6 @@ impl<'a> Sheet<'a> {
         chords
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,4 +1,4 @@
-//! Makes triangles over a loop fine and smooth.
+//! Makes triangles over a loop fine and smooth (Liepa 2003).
 
 use glam::DVec3;
 
@@ -6,19 +6,19 @@ use super::patch::Patch;
 use crate::mesh::{HalfedgeId, Id, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
 
-/// How much longer edges may be for each unit of distance to the loop. With less a cap has more
-/// faces than its loop is worth; with more its triangles are slivers.
-const GRADE: f64 = 0.5;
+/// How much longer edges may be for each unit of distance to the loop. With 0.2 a cap of a large
+/// loop has twice the faces; with 0.5 half of them, and slivers where it grows coarser.
+const GRADE: f64 = 0.35;
 
-/// A face is split where its middle is farther from its corners than this times the length wanted
-/// (Liepa 2003).
+/// A face is split where its middle is farther from its corners than the length wanted over this.
+/// With less the outermost rows are slivers; with more faces are half as long as wanted.
 const ROOM: f64 = std::f64::consts::SQRT_2;
 
 /// The shortest length that is wanted, as a share of the loop's mean edge: vertices that lie on
 /// each other would ask for ever smaller faces.
 const FINEST: f64 = 1.0 / 16.0;
 
-/// Every round halves what is too large at least; a loop of 10,000 edges needs half of these.
+/// Every round cuts what is too large in three at least: for 10,000 edges a quarter of these do.
 const ROUNDS: usize = 40;
 
 /// How often all vertices are moved. They settle fast where there are few rows of them.
@@ -30,25 +30,21 @@ pub fn refine(patch: &mut Patch, progress: &Progress) -> Result<(), Cancelled> {
     let most = 40 * wanted.len() + 400;
     patch.settle(patch.halfedge_ids().collect());
     for _ in 0..ROUNDS {
-        progress.check()?;
         let n_before = patch.n_faces();
-        let mut open = Vec::new();
-        for face in 0..n_before {
+        for face in by_area(patch) {
+            progress.check()?;
             if patch.n_faces() >= most {
                 break;
             }
             if let Some((middle, length)) = is_large(patch, &wanted, face) {
                 let new = patch.split_face(face, middle);
                 wanted.push(length);
-                open.extend(patch.outgoing(new).map(HalfedgeId::next));
+                patch.settle(patch.outgoing(new).map(HalfedgeId::next).collect());
             }
         }
-        if open.is_empty() {
+        if patch.n_faces() == n_before {
             break;
         }
-        patch.settle(open);
-        relax(patch);
-        patch.settle(patch.halfedge_ids().collect());
     }
     for _ in 0..MOVES {
         progress.check()?;
@@ -56,6 +52,18 @@ pub fn refine(patch: &mut Patch, progress: &Progress) -> Result<(), Cancelled> {
         patch.settle(patch.halfedge_ids().collect());
     }
     Ok(())
+}
+
+/// The faces, the largest first.
+fn by_area(patch: &Patch) -> Vec<usize> {
+    let area = |corners: [VertexId; 3]| {
+        let [a, b, c] = corners.map(|v| patch.positions[v]);
+        (b - a).cross(c - a).length()
+    };
+    let areas: Vec<f64> = patch.faces().map(area).collect();
+    let mut faces: Vec<usize> = (0..areas.len()).collect();
+    faces.sort_by(|&a, &b| areas[b].total_cmp(&areas[a]));
+    faces
 }
 
 /// How long edges are to be at each vertex of the loop, and at those that are inside already.

@@ -23,8 +23,6 @@ mod patch;
 mod split;
 mod start;
 
-use thiserror::Error;
-
 use cap::Sheet;
 use frame::Frame;
 
@@ -38,6 +36,21 @@ use crate::progress::{Cancelled, Progress};
 pub struct Settings {
     /// Which borders are closed for good.
     pub fill: Fill,
+    /// What is done with the longest of the other borders.
+    pub way: Way,
+}
+
+/// What is done with the longest border that is not filled; the others get caps in any case.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Way {
+    /// Sheets are doubled across it, others get a cap.
+    #[default]
+    Measured,
+    /// It gets a cap.
+    Cap,
+    /// The mesh is doubled across it. A single triangle gets a cap: its image would have the same
+    /// three corners.
+    Double,
 }
 
 /// Which borders are closed for good: their caps count as real faces.
@@ -53,7 +66,7 @@ pub enum Fill {
 }
 
 /// Why a mesh cannot be closed.
-#[derive(Clone, PartialEq, Debug, Error)]
+#[derive(Clone, PartialEq, Debug, thiserror::Error)]
 pub enum Error {
     /// It hangs together in more than one piece, or has no face.
     #[error("{n} components; one at a time can be closed")]
@@ -125,7 +138,7 @@ pub fn close(
         progress.at(0.3 * i as f64 / filled.len() as f64)?;
         sheet.cap(border, progress)?;
     }
-    let n_real = sheet.faces.len();
+    sheet.n_real = sheet.faces.len();
     let longest = take_longest(mesh, &mut open);
     for (i, border) in open.iter().enumerate() {
         progress.at(0.3 + 0.3 * i as f64 / open.len() as f64)?;
@@ -135,7 +148,7 @@ pub fn close(
     let mut n_doubled = 0;
     if let Some(border) = longest {
         progress.at(0.6)?;
-        if is_doubled(&sheet, &border) {
+        if is_doubled(&sheet, &border, settings.way) {
             sheet.double(&border, progress)?;
             n_doubled = 1;
         } else {
@@ -147,7 +160,7 @@ pub fn close(
     let n_faces = sheet.faces.len();
     Ok(Closed {
         mesh: TriangleMesh::build(sheet.positions, sheet.faces, progress)??,
-        is_real: (0..n_faces).map(|i| i < n_real).collect(),
+        is_real: (0..n_faces).map(|i| i < sheet.n_real).collect(),
         n_filled: filled.len(),
         n_capped,
         n_doubled,
@@ -200,11 +213,16 @@ fn take_longest(mesh: &TriangleMesh, loops: &mut Vec<Vec<HalfedgeId>>) -> Option
 const SHEET: f64 = 0.6;
 
 /// Whether a mesh, with caps on all of its loops but the longest, is doubled across that.
-fn is_doubled(sheet: &Sheet, border: &[HalfedgeId]) -> bool {
-    // The image of a single triangle would have the same three corners.
-    if sheet.faces.len() == 1 {
-        return false;
-    }
+fn is_doubled(sheet: &Sheet, border: &[HalfedgeId], way: Way) -> bool {
+    sheet.mesh.n_faces() > 1
+        && match way {
+            Way::Measured => is_sheet(sheet, border),
+            Way::Cap => false,
+            Way::Double => true,
+        }
+}
+
+fn is_sheet(sheet: &Sheet, border: &[HalfedgeId]) -> bool {
     let frame = Frame::of(&sheet.positions);
     let at = |v: VertexId| frame.inside(sheet.positions[v.index()]);
     let edges = border.iter().map(|&h| sheet.ends(h).map(at));
@@ -213,10 +231,10 @@ fn is_doubled(sheet: &Sheet, border: &[HalfedgeId]) -> bool {
         let [a, b, c] = face.map(at);
         (b - a).cross(c - a).length() / 2.0
     };
-    let (given, added) = sheet.faces.split_at(sheet.mesh.n_faces());
-    let [given, added] = [given, added].map(|faces| faces.iter().map(area).sum::<f64>());
+    let (real, caps) = sheet.faces.split_at(sheet.n_real);
+    let [real, caps] = [real, caps].map(|faces| faces.iter().map(area).sum::<f64>());
     let circle = around * around / (4.0 * std::f64::consts::PI);
-    circle - added > SHEET * given
+    circle - caps > SHEET * real
 }
 
 #[cfg(test)]

@@ -120,7 +120,7 @@ fn cost(points: &[DVec3], [a, b, c]: [u32; 3]) -> f64 {
     area(points, [a, b, c]) + DIAGONAL * diagonal
 }
 
-/// The triangles that cost least together (Klincsek 1980, Barequet and Sharir 1995).
+/// The triangles that cost least together (Barequet and Sharir 1995).
 fn cut_best(points: &[DVec3]) -> Vec<[u32; 3]> {
     let n = points.len();
     let mut costs = vec![0.0; n * n];
