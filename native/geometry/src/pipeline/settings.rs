@@ -240,7 +240,10 @@ impl Settings {
             Borders::Fill => close::Fill::All,
             Borders::FillUpTo(size_pct) => close::Fill::UpTo(size_pct / 100.0),
         };
-        close::Settings { fill }
+        close::Settings {
+            fill,
+            ..close::Settings::default()
+        }
     }
 
     /// What the flow of so many quads is asked for.

@@ -90,7 +90,16 @@ impl Closing {
         }
         let settings = decimate::Settings { n_faces };
         let simplified = decimate::simplify(&self.open, &settings, progress)?;
-        let closed = close::close(&simplified.mesh, &self.settings, progress)?;
+        // Both have to be closed the same way.
+        let way = match self.closed.n_doubled {
+            0 => close::Way::Cap,
+            _ => close::Way::Double,
+        };
+        let settings = close::Settings {
+            way,
+            ..self.settings.clone()
+        };
+        let closed = close::close(&simplified.mesh, &settings, progress)?;
         Ok(Small {
             border: closed.border(),
             mesh: closed.mesh,
