@@ -104,10 +104,6 @@ pub(super) fn dress(
     let part = progress.part("", 0.5, 0.7);
     field::settle_along(mesh, &mut field, (&pull, &along), &part)?;
     mirror(&mut field);
-    if let (Some(n), Some(d)) = (corners, guides.mirror) {
-        let l: Vec<_> = d.border().iter().map(|&h| mesh.origin(h)).filter(|&v| n.index(v).is_some() || field.indices[v] != 0).map(|v| (v.0, n.index(v), field.indices[v], mesh.position(v))).collect();
-        eprintln!("DBG plane corners {l:.2?} sum {}", mesh.vertex_ids().map(|v| field.indices[v]).sum::<i32>());
-    }
     let wish = wish(mesh, &field, sizes, &progress.part("", 0.7, 1.0))?;
     let plan = |lines| planned(guides, &field, lines);
     let plans = if settings.creases == Creases::All {

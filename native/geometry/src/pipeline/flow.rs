@@ -82,7 +82,6 @@ type Wearing = (
     Option<HalfedgeMap<bool>>,
 );
 
-fn even_n(m: &HalfedgeMap<bool>) -> usize { m.iter().filter(|&&x| x).count() }
 /// Why an attempt gave no quads.
 struct Refusal {
     reason: String,
@@ -140,7 +139,6 @@ pub fn along(
         asked,
         style,
     };
-    eprintln!("DBG even: lines {} border halfedges {:?} firm lines given {} solid {}", even_n(&ground.lines), ground.border.as_ref().map(even_n), borders.len(), lines.len());
     let part = progress.part("", 0.15, 1.0);
     let sheet = asked.opening.filter(|opening| opening.is_sheet());
     let symmetry = match (sheet, asked.axis) {
@@ -194,7 +192,6 @@ fn symmetric(
         })
     })?;
     let mut symmetric = None;
-    eprintln!("DBG symmetry: {:?}", found.as_ref().map(|f| f.as_ref().map(|_| ()).map_err(|e| e.clone())));
     let reason = match found.flatten() {
         Ok((even, doubled)) => {
             let usual = ground.doubled(even, doubled);
@@ -278,7 +275,6 @@ impl Ground<'_> {
             }
             let to = from + 0.6 * (1.0 - from);
             let found = self.attempt(attempt, clock, &progress.part("", from, to))?;
-            eprintln!("DBG attempt {attempt:?} doubled {} solid {}: {:?}", self.doubled.is_some(), self.is_solid(), found.as_ref().map(|f| (f.n_failed(), f.n_missed, f.deformed.report)).map_err(|e| e.reason.clone()));
             budget.is_over |= matches!(found, Err(Refusal { is_over: true, .. }));
             let found = found.map_err(|refusal| refusal.reason);
             let found = found.and_then(FlowedPart::not_cut_off);

@@ -187,7 +187,6 @@ impl Opening {
             }
         }
         let (side, n_sides) = groups.numbered();
-        if n_sides != 99 { let nb = mesh.halfedge_ids().filter(|&h| border[h]).count(); let nf = mesh.halfedge_ids().filter(|&h| is_fold(h)).count(); eprintln!("DBG border {nb} folds {nf} far {:?}", mesh.halfedge_ids().filter(|&h| border[h]).map(|h| folds.closest(mesh.position(mesh.origin(h))).distance_squared.sqrt()).fold(0.0, f64::max)); }
         if n_sides != 2 {
             return Ok(Err(format!("the even surface has {n_sides} sides, not two")));
         }
@@ -238,7 +237,6 @@ impl Opening {
             lies(a, SAME) && lies(b, SAME) && lies(a.midpoint(b), bend)
         };
         let edges: Vec<[VertexId; 2]> = made.on_lines.iter().filter(is_border).copied().collect();
-        eprintln!("DBG held {} of {}; off {:?}", edges.len(), made.on_lines.len(), made.on_lines.iter().filter(|e| !edges.contains(e)).map(|&[a,b]| { let [a,b]=[a,b].map(at); (own.closest(a).distance_squared.sqrt(), own.closest(b).distance_squared.sqrt(), own.closest(a.midpoint(b)).distance_squared.sqrt()/a.distance(b)) }).take(6).collect::<Vec<_>>());
         let mut vertices: Vec<VertexId> = edges.iter().flatten().copied().collect();
         vertices.sort_unstable();
         vertices.dedup();

@@ -32,7 +32,6 @@ impl Opening {
             let corners: Vec<DVec3> = mesh.face(face).iter().map(|&v| mesh.position(v)).collect();
             votes[patch as usize] += self.vote(&corners, target);
         }
-        eprintln!("DBG reopen: border edges {} patches {} votes {:?} bare {:?}", border.len(), n_patches, &votes[..votes.len().min(12)], topology_of_triangles(self.bare.mesh()));
         let is_kept: Vec<bool> = patches.iter().map(|&p| votes[p as usize] > 0.0).collect();
         let opened = deformed.only(&is_kept, progress)?;
         let opened = self.onto_borders(opened, progress)?;
