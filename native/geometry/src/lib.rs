@@ -39,6 +39,7 @@
 //! ```
 
 pub mod clean;
+pub mod close;
 pub mod decimate;
 pub mod deform;
 pub mod elementary;
