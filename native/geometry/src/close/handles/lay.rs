@@ -17,7 +17,10 @@ pub fn lay(
     progress: &Progress,
 ) -> Result<Option<(Pieces, Vec<VertexId>)>, Cancelled> {
     let mesh = &pieces.mesh;
-    let snapped = stops.iter().map(|stop| snapped(mesh, *stop, snap)).collect();
+    let snapped = stops
+        .iter()
+        .map(|stop| snapped(mesh, *stop, snap))
+        .collect();
     let stops = absorbed(mesh, snapped);
     if stops.len() < 3 || !is_simple(mesh, &stops) {
         return Ok(None);

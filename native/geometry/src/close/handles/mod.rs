@@ -17,6 +17,7 @@ mod split;
 mod tighten;
 mod weld;
 
+use glam::DVec3;
 use thiserror::Error;
 
 use crate::measure::topology_of_triangles;
@@ -40,6 +41,9 @@ const MOST_AGAIN: usize = 6;
 /// Crossings nearer to a vertex than this share of their edge are moved onto it: less leaves slivers
 /// beside the cut, more leaves it crooked.
 const SNAP: f64 = 0.1;
+/// A loop that drawn tight is no shorter than this share of it stays as it is: two edges in a row turn by
+/// up to 16 degrees then, and no face is split.
+const TIGHT: f64 = 0.99;
 /// A stretch along a crease stays where it is if it is this share of its loop.
 const STRETCH: f64 = 0.125;
 
@@ -112,9 +116,12 @@ pub fn cut(mesh: &TriangleMesh, progress: &Progress) -> Result<Cut, Error> {
     })
 }
 
-/// A short loop of a component that does not part it, along its edges, borders among them, to show
+/// A short loop of one component that does not part it, along its edges, borders among them, to show
 /// where a handle is; none without handles.
 pub fn short_loop(mesh: &TriangleMesh) -> Option<Vec<VertexId>> {
+    if topology_of_triangles(mesh).genus == Some(0) {
+        return None;
+    }
     let quiet = Progress::none();
     let mut search = Search::new(mesh, false);
     let root = mesh.vertex_ids().next()?;
@@ -183,7 +190,9 @@ fn shortest(
 fn shortened(search: &mut Search, mut best: Loop, progress: &Progress) -> Result<Loop, Cancelled> {
     for _ in 0..MOST_AGAIN {
         let n = best.vertices.len();
-        let again: Vec<_> = (0..N_AGAIN).map(|i| best.vertices[i * n / N_AGAIN]).collect();
+        let again: Vec<_> = (0..N_AGAIN)
+            .map(|i| best.vertices[i * n / N_AGAIN])
+            .collect();
         let before = best.length;
         for root in again {
             let limit = best.length * 0.999;
@@ -203,9 +212,13 @@ fn along(
     found: &Loop,
     progress: &Progress,
 ) -> Result<(Pieces, Vec<VertexId>, Vec<VertexId>), Cancelled> {
-    let kept = on_creases(search, &pieces.mesh, &found.vertices);
-    let stops = tighten(&pieces.mesh, &found.vertices, |i| kept[i]);
-    for snap in [SNAP, 0.0] {
+    let mesh = &pieces.mesh;
+    let kept = on_creases(search, mesh, &found.vertices);
+    let stops = tighten(mesh, &found.vertices, |i| kept[i]);
+    let points = found.vertices.iter().map(|&v| mesh.position(v));
+    let tight = stops.iter().map(|stop| stop.position(mesh));
+    let is_tight = round(&tight.collect::<Vec<_>>()) > TIGHT * round(&points.collect::<Vec<_>>());
+    for snap in [SNAP, 0.0].into_iter().filter(|_| !is_tight) {
         let Some((laid, line)) = lay(pieces, (&stops, snap), progress)? else {
             continue;
         };
@@ -218,12 +231,21 @@ fn along(
     Ok((cut, found.vertices.clone(), copies))
 }
 
+/// The length of a closed line.
+fn round(points: &[DVec3]) -> f64 {
+    let next = points.iter().cycle().skip(1);
+    points.iter().zip(next).map(|(p, q)| p.distance(*q)).sum()
+}
+
 /// Whether each vertex of a loop lies on a long stretch of it along sharp edges.
 fn on_creases(search: &Search, mesh: &TriangleMesh, line: &[VertexId]) -> Vec<bool> {
     let n = line.len();
     let edge = |i: usize| slit::between(mesh, [line[i % n], line[(i + 1) % n]]);
     let is_sharp = |i: usize| edge(i).is_some_and(|h| search.is_sharp(h));
-    let length = |i: usize| mesh.position(line[i % n]).distance(mesh.position(line[(i + 1) % n]));
+    let length = |i: usize| {
+        mesh.position(line[i % n])
+            .distance(mesh.position(line[(i + 1) % n]))
+    };
     let whole: f64 = (0..n).map(length).sum();
     let mut kept = vec![false; n];
     let Some(start) = (0..n).find(|&i| !is_sharp(i)) else {
@@ -231,7 +253,9 @@ fn on_creases(search: &Search, mesh: &TriangleMesh, line: &[VertexId]) -> Vec<bo
     };
     let mut from = start + 1;
     while from < start + n {
-        let to = (from..start + n).find(|&i| !is_sharp(i)).unwrap_or(start + n);
+        let to = (from..start + n)
+            .find(|&i| !is_sharp(i))
+            .unwrap_or(start + n);
         if (from..to).map(length).sum::<f64>() >= STRETCH * whole && from < to {
             (from..=to).for_each(|i| kept[i % n] = true);
         }

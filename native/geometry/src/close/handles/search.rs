@@ -64,7 +64,10 @@ impl<'a> Search<'a> {
         let is_sharp = sharp_edges(mesh, SHARP);
         let loops = mesh.border_loops();
         let mut border = VertexMap::filled(mesh.n_vertices(), u32::MAX);
-        for (i, h) in (0..).zip(&loops).flat_map(|(i, l)| l.iter().map(move |h| (i, h))) {
+        for (i, h) in (0..)
+            .zip(&loops)
+            .flat_map(|(i, l)| l.iter().map(move |h| (i, h)))
+        {
             border[mesh.origin(*h)] = i;
         }
         let is_barred = border.iter().map(|&b| avoids_borders && b != u32::MAX);

@@ -94,14 +94,10 @@ impl Pieces {
         let [a, b, c] = sides.map(|h| self.mesh.origin(h));
         let [m, n, o] = sides.map(|h| VertexId(on[h.index()]));
         let [ab, bc, ca] = sides.map(|h| self.sides[h]);
-        let gap = |p: VertexId, q: VertexId| {
-            positions[p.index()].distance_squared(positions[q.index()])
-        };
+        let gap =
+            |p: VertexId, q: VertexId| positions[p.index()].distance_squared(positions[q.index()]);
         match n_split {
-            1 => vec![
-                [(a, ab), (m, None), (c, ca)],
-                [(m, ab), (b, bc), (c, None)],
-            ],
+            1 => vec![[(a, ab), (m, None), (c, ca)], [(m, ab), (b, bc), (c, None)]],
             2 if gap(a, n) <= gap(m, c) => vec![
                 [(a, ab), (m, None), (n, None)],
                 [(m, ab), (b, bc), (n, None)],

@@ -41,7 +41,9 @@ fn shape(mesh: &TriangleMesh) -> Topology {
 fn length(mesh: &TriangleMesh, line: &[VertexId]) -> f64 {
     let next = line.iter().cycle().skip(1);
     let edges = line.iter().zip(next);
-    edges.map(|(&a, &b)| mesh.position(a).distance(mesh.position(b))).sum()
+    edges
+        .map(|(&a, &b)| mesh.position(a).distance(mesh.position(b)))
+        .sum()
 }
 
 /// Checks all that is promised of a cut.
@@ -75,7 +77,13 @@ fn check(mesh: &TriangleMesh, cut: &Cut) {
     }
     let welded = weld(&PolygonMesh::from(&cut.mesh), &cut.twins).unwrap();
     let again = topology(&welded.mesh, &Progress::none()).unwrap();
-    assert!(again.is_alike(&Topology { n_quads: 0, ..before }), "{again:?} {before:?}");
+    assert!(
+        again.is_alike(&Topology {
+            n_quads: 0,
+            ..before
+        }),
+        "{again:?} {before:?}"
+    );
 }
 
 fn cut_of(mesh: &TriangleMesh) -> Cut {
@@ -101,7 +109,7 @@ fn a_torus_of_wavy_rings_is_cut_straight() {
     let bent = torus.positions().iter().enumerate().map(|(i, _)| {
         let [ring, at] = [i / 20, i % 20].map(|k| k as f64);
         let turn = at / 20.0 * std::f64::consts::TAU;
-        let along = (ring + 3.0 * crate::elementary::sin(3.0 * turn)) / 60.0;
+        let along = (ring + 1.5 * crate::elementary::sin(3.0 * turn)) / 60.0;
         let (s, c) = crate::elementary::sin_cos(along * std::f64::consts::TAU);
         let (z, r) = crate::elementary::sin_cos(turn);
         DVec3::new(c * (1.0 + 0.4 * r), s * (1.0 + 0.4 * r), 0.4 * z)
@@ -155,6 +163,96 @@ fn huge_and_tiny_coordinates_are_cut_too() {
     }
     let flat = shapes::torus(5, 4).with_positions(vec![DVec3::ONE; 20]);
     assert_eq!(shape(&cut_of(&flat).mesh).genus, Some(0));
+}
+
+/// A torus of n × m quads, cut open between its last and its first ring.
+fn open_torus(n: u32, m: u32) -> (PolygonMesh, [Vec<VertexId>; 2]) {
+    let torus = shapes::torus(n, m);
+    let ring = |i: u32| (i * m..(i + 1) * m).map(VertexId);
+    let positions = torus.positions().iter().copied();
+    let positions = positions.chain(ring(0).map(|v| torus.position(v) + 0.01 * DVec3::Y));
+    let quads: Vec<[u32; 4]> = (0..n)
+        .flat_map(|i| {
+            let next = |j: u32| (j + 1) % m;
+            (0..m).map(move |j| {
+                [
+                    i * m + j,
+                    (i + 1) * m + j,
+                    (i + 1) * m + next(j),
+                    i * m + next(j),
+                ]
+            })
+        })
+        .collect();
+    let open = PolygonMesh::from_faces(positions.collect(), &quads).unwrap();
+    (open, [ring(0).collect(), ring(n).collect()])
+}
+
+#[test]
+fn an_opened_torus_of_quads_is_welded_to_what_it_was() {
+    let (open, [first, mut last]) = open_torus(12, 7);
+    last.rotate_left(3);
+    let chains = [first, last];
+    let welded = weld(&open, std::slice::from_ref(&chains)).unwrap();
+    let shape = topology(&welded.mesh, &Progress::none()).unwrap();
+    assert_eq!(
+        (shape.genus, shape.manifold, shape.closed),
+        (Some(1), true, true)
+    );
+    assert_eq!((shape.n_vertices, shape.n_quads), (84, 84));
+    let torus = shapes::torus(12, 7);
+    for (i, v) in (0..84).map(VertexId).enumerate() {
+        let moved = if i < 7 { 0.005 * DVec3::Y } else { DVec3::ZERO };
+        assert!(welded.mesh.position(v).distance(torus.position(v) + moved) < 1e-12);
+        assert_eq!(welded.vertices[v], v);
+    }
+    assert_eq!(welded.vertices[VertexId(84 + 3)], VertexId(3));
+}
+
+#[test]
+fn borders_that_do_not_fit_are_not_welded() {
+    let (open, [first, last]) = open_torus(12, 7);
+    let message = |chains: [Vec<VertexId>; 2]| weld(&open, &[chains]).unwrap_err().to_string();
+    let short = last[1..].to_vec();
+    assert_eq!(
+        message([first.clone(), short]),
+        "the borders of cut 0 have 7 and 6 vertices"
+    );
+    let back = last.iter().rev().copied().collect();
+    assert!(message([first.clone(), back]).contains("the borders of cut 0 do not fit"));
+    let twice = first.clone();
+    assert_eq!(
+        message([first, twice]),
+        "vertex 0 is passed twice by the borders of cuts"
+    );
+}
+
+#[test]
+fn a_sharp_rim_near_by_is_cut_rather_than_the_shortest_way() {
+    // A ring of square section, 1 by 1, about a hole of radius 0.7: its inner rims are 4.4 long.
+    let [n, m] = [96, 32];
+    let corner = |j: u32| {
+        let [side, along] = [j / 8, j % 8].map(f64::from);
+        let along = along / 8.0;
+        [
+            [0.0, along],
+            [along, 1.0],
+            [1.0, 1.0 - along],
+            [1.0 - along, 0.0],
+        ][side as usize]
+    };
+    let points = (0..n * m).map(|i| {
+        let [r, z] = corner(i % m);
+        let turn = f64::from(i / m) / f64::from(n) * std::f64::consts::TAU;
+        let (s, c) = crate::elementary::sin_cos(turn);
+        DVec3::new(c * (0.7 + r), s * (0.7 + r), z)
+    });
+    let ring = shapes::torus(n, m).with_positions(points.collect());
+    let cut = cut_of(&ring);
+    check(&ring, &cut);
+    assert_eq!(cut.mesh.n_faces(), ring.n_faces());
+    let rim = length(&cut.mesh, &cut.twins[0][0]);
+    assert!((rim - 0.7 * std::f64::consts::TAU).abs() < 0.01, "{rim}");
 }
 
 proptest! {

@@ -13,8 +13,8 @@ use super::split::Place;
 use crate::measure::angle_between;
 use crate::mesh::{HalfedgeId, TriangleMesh, VertexId};
 
-/// Crossings stay so far from the ends of their edges, as shares of these: nearer, a step of one of
-/// many crossings round a vertex becomes too short to get anywhere.
+/// Crossings stay so far from the ends of their edges, as shares of these: nearer, a crossing has no
+/// way out any more, as those beside it are there too.
 const LEAST: f64 = 0.02;
 /// And so far from ends on a border, so that there is a lane between the two.
 const LANE: f64 = 0.35;
@@ -65,12 +65,14 @@ pub fn tighten(
             tight.stops.push_back(Stop::Vertex(v));
             continue;
         }
-        let [from, to] = [line[(i + line.len() - 1) % line.len()], line[(i + 1) % line.len()]];
+        let [from, to] = [
+            line[(i + line.len() - 1) % line.len()],
+            line[(i + 1) % line.len()],
+        ];
         // The first of the fan leads along the loop.
         let crossed = fan(mesh, [from, v, to]).into_iter().skip(1).rev();
         for edge in crossed {
-            let stop = tight.held(Place { edge, share: 0.0 });
-            tight.stops.push_back(stop);
+            tight.stops.push_back(middle(edge));
         }
     }
     for _ in 0..MOST_ROUNDS {
@@ -91,9 +93,8 @@ struct Tight<'a> {
 impl Tight<'_> {
     /// How near a crossing may come to the two ends of its edge.
     fn bounds(&self, edge: HalfedgeId) -> [f64; 2] {
-        let [low, high] = ends(self.mesh, edge).map(|v| {
-            if self.mesh.is_border(v) { LANE } else { LEAST }
-        });
+        let [low, high] =
+            ends(self.mesh, edge).map(|v| if self.mesh.is_border(v) { LANE } else { LEAST });
         [low, 1.0 - high]
     }
 
@@ -160,35 +161,24 @@ impl Tight<'_> {
         let Stop::Edge(first) = self.stops[0] else {
             return None;
         };
-        let [low, high] = self.bounds(first.edge);
-        let side = match first.share {
-            share if share <= low => 0,
-            share if share >= high => 1,
-            _ => return None,
-        };
-        let vertex = ends(self.mesh, first.edge)[side];
+        let held = [0, 1].map(|side| self.held_at(ends(self.mesh, first.edge)[side], side));
+        held.into_iter().flatten().next()
+    }
+
+    /// The same for an end of the first crossing's edge.
+    fn held_at(&self, vertex: VertexId, side: usize) -> Option<Held> {
         let at = |stop: &Stop| match stop {
             Stop::Edge(place) => ends(self.mesh, place.edge).contains(&vertex),
             Stop::Vertex(_) => false,
         };
         let n = self.stops.iter().take_while(|stop| at(stop)).count();
         let is_run = n < self.stops.len() && !self.stops.back().is_some_and(at);
-        let is_held = self.stops.iter().take(n).all(|stop| self.is_at(stop, side));
         let held = Held { vertex, side, n };
-        let is_free = is_run && is_held && !self.mesh.is_border(vertex);
+        let is_free = is_run && !self.mesh.is_border(vertex);
         (is_free && self.is_shorter(&held)).then_some(held)
     }
 
-    /// Whether a crossing is as near to an end as it can be.
-    fn is_at(&self, stop: &Stop, side: usize) -> bool {
-        let Stop::Edge(place) = stop else {
-            return false;
-        };
-        let [low, high] = self.bounds(place.edge);
-        [place.share <= low, place.share >= high][side]
-    }
-
-    /// Whether the angle on the other side of a vertex is less than straight.
+    /// Whether a vertex is in the way of a straight line, and not on its other side.
     fn is_shorter(&self, held: &Held) -> bool {
         let mesh = self.mesh;
         let at = mesh.position(held.vertex);
@@ -206,7 +196,8 @@ impl Tight<'_> {
             angle_between(a - at, b - at)
         });
         let other = whole.sum::<f64>() - own;
-        other < own && other < std::f64::consts::PI - 1e-6
+        let straight = std::f64::consts::PI;
+        other < straight - 1e-6 && own > straight
     }
 
     /// Leads the line round the other side of a vertex.
@@ -223,8 +214,7 @@ impl Tight<'_> {
         let mut crossed = Vec::new();
         let mut h = turn(first);
         while Some(h.face()) != to {
-            let share = if held.side == 0 { 1.0 } else { 0.0 };
-            crossed.push(self.held(Place { edge: h, share }));
+            crossed.push(middle(h));
             h = turn(self.mesh.twin(h).expect("the vertex is inside"));
         }
         for stop in crossed.into_iter().rev() {
@@ -252,6 +242,11 @@ impl Tight<'_> {
         }
         self.stops = kept;
     }
+}
+
+/// Where crossings begin: near the ends their way would be long, many small steps round a vertex.
+fn middle(edge: HalfedgeId) -> Stop {
+    Stop::Edge(Place { edge, share: 0.5 })
 }
 
 /// A vertex that holds a line.

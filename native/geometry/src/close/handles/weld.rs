@@ -49,7 +49,8 @@ pub enum WeldError {
 pub fn weld(mesh: &PolygonMesh, twins: &[[Vec<VertexId>; 2]]) -> Result<Welded, WeldError> {
     check(mesh, twins)?;
     let mut positions = mesh.positions().to_vec();
-    let mut joined: VertexMap<VertexId> = (0..mesh.n_vertices()).map(VertexId::from_index).collect();
+    let mut joined: VertexMap<VertexId> =
+        (0..mesh.n_vertices()).map(VertexId::from_index).collect();
     for [kept, other] in twins {
         let shift = best_shift(mesh, kept, other);
         let other = other.iter().cycle().skip(shift);
@@ -83,7 +84,9 @@ fn best_shift(mesh: &PolygonMesh, kept: &[VertexId], other: &[VertexId]) -> usiz
             .sum()
     };
     let gaps: Vec<f64> = (0..n).map(gap).collect();
-    (0..n).min_by(|&a, &b| gaps[a].total_cmp(&gaps[b])).unwrap_or(0)
+    (0..n)
+        .min_by(|&a, &b| gaps[a].total_cmp(&gaps[b]))
+        .unwrap_or(0)
 }
 
 fn check(mesh: &PolygonMesh, twins: &[[Vec<VertexId>; 2]]) -> Result<(), WeldError> {
@@ -128,7 +131,10 @@ impl Sides {
     fn of(&self, chain: &[VertexId]) -> Option<bool> {
         let has = |ends: [VertexId; 2]| self.0.binary_search(&ends).is_ok();
         let next = chain.iter().cycle().skip(1);
-        let mut sides = chain.iter().zip(next).map(|(&a, &b)| [has([a, b]), has([b, a])]);
+        let mut sides = chain
+            .iter()
+            .zip(next)
+            .map(|(&a, &b)| [has([a, b]), has([b, a])]);
         let first = sides.next()?;
         let is_border = first[0] != first[1] && sides.all(|side| side == first);
         is_border.then_some(first[0])
