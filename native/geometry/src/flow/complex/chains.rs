@@ -33,6 +33,8 @@ pub struct Chains {
     n_lines: usize,
     /// Which of the lines are each other's images.
     pub ties: Vec<Tie>,
+    /// Closed loops of lines that shall be equally long, two and two.
+    pub twins: Vec<[Vec<usize>; 2]>,
     /// Of the first lines the vertices at their ends, where they are put along the nearest axis at any
     /// cost and have to be straight ways between these.
     pub firm: Vec<[u32; 2]>,
@@ -117,6 +119,7 @@ impl Complex {
         let mut chains = Chains {
             n_lines: lines.len(),
             ties: Vec::new(),
+            twins: Vec::new(),
             firm: Vec::new(),
             terms: vec![Vec::new(); self.twins.len()],
         };
