@@ -143,7 +143,7 @@ impl Tight<'_> {
         let mut is_led = false;
         for _ in 0..self.stops.len() {
             if let Some(held) = self.held_at_first() {
-                self.pass(held);
+                self.pass(&held);
                 is_led = true;
             }
             if !self.stops.is_empty() {
@@ -201,7 +201,7 @@ impl Tight<'_> {
     }
 
     /// Leads the line round the other side of a vertex.
-    fn pass(&mut self, held: Held) {
+    fn pass(&mut self, held: &Held) {
         let edge = |stop: &Stop| match stop {
             Stop::Edge(place) => place.edge,
             Stop::Vertex(_) => unreachable!("only crossings are held"),
