@@ -38,6 +38,9 @@ const N_ROOTS: usize = 16;
 const N_AGAIN: usize = 3;
 /// At most so often.
 const MOST_AGAIN: usize = 6;
+/// The next loop is looked for up to this multiple of the length of the last first: most often there
+/// is one, and the way is short.
+const NEXT: f64 = 2.0;
 /// Crossings nearer to a vertex than this share of their edge are moved onto it: less leaves slivers
 /// beside the cut, more leaves it crooked.
 const SNAP: f64 = 0.1;
@@ -172,9 +175,24 @@ fn shortest(
         roots.extend(search.spread(1, progress)?.into_iter().map(Root::new));
     }
     roots.sort_by(|a, b| a.least.total_cmp(&b.least));
+    let likely = roots.first().map_or(0.0, |root| NEXT * root.least);
+    let mut best = through_roots(search, (&mut *roots, likely), progress)?;
+    if best.is_none() {
+        best = through_roots(search, (roots, f64::INFINITY), progress)?;
+    }
+    let best = best.expect("a surface with handles has loops that do not part it");
+    shortened(search, best, progress)
+}
+
+/// The shortest loop through one of the roots, if one is shorter than `limit`.
+fn through_roots(
+    search: &mut Search,
+    (roots, limit): (&mut [Root], f64),
+    progress: &Progress,
+) -> Result<Option<Loop>, Cancelled> {
     let mut best: Option<Loop> = None;
     for root in roots {
-        let limit = best.as_ref().map_or(f64::INFINITY, |best| best.length);
+        let limit = best.as_ref().map_or(limit, |best| best.length);
         if root.least >= limit {
             break;
         }
@@ -182,8 +200,7 @@ fn shortest(
         root.least = found.as_ref().map_or(limit, |found| found.length);
         best = found.or(best);
     }
-    let best = best.expect("a surface with handles has loops that do not part it");
-    shortened(search, best, progress)
+    Ok(best)
 }
 
 /// A loop or a shorter one through a vertex of it, and so on.

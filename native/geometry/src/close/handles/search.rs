@@ -3,7 +3,7 @@
 //! A tree of shortest ways reaches all vertices nearer than half the length of a loop; a tree of
 //! faces that crosses none of its edges takes the edges that close the longest loops first. What is
 //! left over are two edges for each handle; each closes a loop that does not part the surface,
-//! and the shortest one through the root is among them (Erickson and Whittlesey, 2005).
+//! and the shortest one through the root is among them (erickson2005greedy).
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
