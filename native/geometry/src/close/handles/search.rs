@@ -17,6 +17,8 @@ use crate::progress::{Cancelled, Progress};
 const SHARP: f64 = 0.7;
 /// And are so much shorter to a loop: it may go a third farther to run along them.
 const CHEAP: f64 = 0.75;
+/// Edges beside a border are so much longer to a loop: quads need room between the two.
+const DEAR: f64 = 1.5;
 
 /// A closed way along edges.
 #[derive(Clone, PartialEq, Debug)]
@@ -71,9 +73,10 @@ impl<'a> Search<'a> {
             border[mesh.origin(*h)] = i;
         }
         let is_barred = border.iter().map(|&b| avoids_borders && b != u32::MAX);
+        let is_barred: VertexMap<bool> = is_barred.collect();
         Self {
-            costs: costs(mesh, &is_sharp),
-            is_barred: is_barred.collect(),
+            costs: costs(mesh, &is_sharp, &is_barred),
+            is_barred,
             is_sharp,
             border,
             n_borders: loops.len(),
@@ -258,13 +261,28 @@ impl<'a> Search<'a> {
 
 type Heap = BinaryHeap<Reverse<(u64, u32)>>;
 
-/// The length of every edge as a share of the mesh's size, less where it is sharp.
-fn costs(mesh: &TriangleMesh, is_sharp: &HalfedgeMap<bool>) -> HalfedgeMap<f64> {
+/// The length of every edge as a share of the mesh's size, less where it is sharp, more beside
+/// vertices that are barred.
+fn costs(
+    mesh: &TriangleMesh,
+    is_sharp: &HalfedgeMap<bool>,
+    is_barred: &VertexMap<bool>,
+) -> HalfedgeMap<f64> {
+    let mut is_beside = VertexMap::filled(mesh.n_vertices(), false);
+    for v in mesh.vertex_ids().filter(|&v| is_barred[v]) {
+        mesh.neighbours(v).for_each(|next| is_beside[next] = true);
+    }
     let largest = |size: f64, p: &glam::DVec3| size.max(p.abs().max_element());
     let size = mesh.positions().iter().fold(f64::MIN_POSITIVE, largest);
     let cost = |h: HalfedgeId| {
-        let [a, b] = [mesh.origin(h), mesh.target(h)].map(|v| mesh.position(v) / size);
-        a.distance(b) * if is_sharp[h] { CHEAP } else { 1.0 }
+        let ends = [mesh.origin(h), mesh.target(h)];
+        let [a, b] = ends.map(|v| mesh.position(v) / size);
+        let room = if ends.iter().any(|&v| is_beside[v]) {
+            DEAR
+        } else {
+            1.0
+        };
+        a.distance(b) * room * if is_sharp[h] { CHEAP } else { 1.0 }
     };
     mesh.halfedge_ids().map(cost).collect()
 }
