@@ -38,14 +38,14 @@ const N_ROOTS: usize = 16;
 const N_AGAIN: usize = 3;
 /// At most so often.
 const MOST_AGAIN: usize = 6;
-/// The next loop is looked for up to this multiple of the length of the last first: most often there
-/// is one, and the way is short.
+/// The next loop is looked for up to this multiple of the length of the last first: most often
+/// there is one, and the way is short.
 const NEXT: f64 = 2.0;
-/// Crossings nearer to a vertex than this share of their edge are moved onto it: less leaves slivers
-/// beside the cut, more leaves it crooked.
+/// Crossings nearer to a vertex than this share of their edge are moved onto it: less leaves
+/// slivers beside the cut, more leaves it crooked.
 const SNAP: f64 = 0.1;
-/// A loop that drawn tight is no shorter than this share of it stays as it is: two edges in a row turn by
-/// up to 16 degrees then, and no face is split.
+/// A loop that drawn tight is no shorter than this share of it stays as it is: two edges in a row
+/// turn by up to 16 degrees then, and no face is split.
 const TIGHT: f64 = 0.99;
 /// A stretch along a crease stays where it is if it is this share of its loop.
 const STRETCH: f64 = 0.125;
@@ -82,9 +82,10 @@ pub enum Error {
 /// Cuts every handle of one component along a short loop; without handles the mesh as it is.
 ///
 /// Loops touch neither borders nor each other nor themselves. Each is the shortest one found from
-/// vertices all over the surface, where edges along creases count as shorter, and drawn tight. Faces
-/// that it crosses are split, and inner edges between two vertices of borders, where there are handles.
-/// All other faces and all vertices stay, in their order; new ones follow. About n log n for each handle.
+/// vertices all over the surface, where edges along creases count as shorter, and drawn tight.
+/// Faces that it crosses are split, and inner edges between two vertices of borders, where there
+/// are handles. All other faces and all vertices stay, in their order; new ones follow. About n log
+/// n for each handle.
 ///
 /// # Errors
 /// [`enum@Error`].
@@ -119,8 +120,8 @@ pub fn cut(mesh: &TriangleMesh, progress: &Progress) -> Result<Cut, Error> {
     })
 }
 
-/// A short loop of one component that does not part it, along its edges, borders among them, to show
-/// where a handle is; none without handles.
+/// A short loop of one component that does not part it, along its edges, borders among them, to
+/// show where a handle is; none without handles.
 pub fn short_loop(mesh: &TriangleMesh) -> Option<Vec<VertexId>> {
     if topology_of_triangles(mesh).genus == Some(0) {
         return None;

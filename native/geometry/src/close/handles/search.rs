@@ -114,7 +114,8 @@ impl<'a> Search<'a> {
         Ok(roots)
     }
 
-    /// The shortest loop through `root` that does not part the surface, if one is shorter than `limit`.
+    /// The shortest loop through `root` that does not part the surface, if one is shorter than
+    /// `limit`.
     pub fn through(
         &mut self,
         root: VertexId,

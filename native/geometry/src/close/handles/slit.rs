@@ -9,8 +9,8 @@ pub fn between(mesh: &TriangleMesh, [a, b]: [VertexId; 2]) -> Option<HalfedgeId>
     mesh.outgoing(a).find(|&h| mesh.target(h) == b)
 }
 
-/// Doubles the vertices of a loop that passes none twice and none on a border: the faces on its left
-/// get the copies, which are returned in the order of the loop.
+/// Doubles the vertices of a loop that passes none twice and none on a border: the faces on its
+/// left get the copies, which are returned in the order of the loop.
 pub fn slit(
     pieces: Pieces,
     line: &[VertexId],

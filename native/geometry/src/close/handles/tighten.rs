@@ -13,8 +13,8 @@ use super::split::Place;
 use crate::measure::angle_between;
 use crate::mesh::{HalfedgeId, TriangleMesh, VertexId};
 
-/// Crossings stay so far from the ends of their edges, as shares of these: nearer, a crossing has no
-/// way out any more, as those beside it are there too.
+/// Crossings stay so far from the ends of their edges, as shares of these: nearer, a crossing has
+/// no way out any more, as those beside it are there too.
 const LEAST: f64 = 0.02;
 /// And so far from ends on a border, so that there is a lane between the two.
 const LANE: f64 = 0.35;

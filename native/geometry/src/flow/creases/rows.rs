@@ -36,8 +36,8 @@ fn tied(complex: &Complex, Tie { lines, turns }: Tie) -> [Vec<f64>; 2] {
     })
 }
 
-/// The equations that make the two loops of twins equally long, one for each two: the sum of lengths of
-/// their lines, each along the axis and in the direction that it is wished to be near.
+/// The equations that make the two loops of twins equally long, one for each two: the sum of
+/// lengths of their lines, each along the axis and in the direction that it is wished to be near.
 pub fn twin_rows(complex: &Complex) -> Vec<Vec<f64>> {
     let twins = complex.chains.twins.iter().map(|[own, other]| {
         let [own, other] = [own, other].map(|lines| length_of(complex, lines));
