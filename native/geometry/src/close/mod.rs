@@ -18,6 +18,7 @@
 mod cap;
 mod double;
 mod frame;
+pub mod handles;
 mod membrane;
 mod patch;
 mod split;

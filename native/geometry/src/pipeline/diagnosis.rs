@@ -25,7 +25,7 @@ pub fn parts(
     };
     let mut surfaces = surfaces(apart, component, n);
     if surfaces.iter().any(|surface| surface.genus() != 0) {
-        let loops = handle::loops(&apart.mesh, component, n);
+        let loops = handle::loops(&apart.mesh);
         for (surface, edges) in surfaces.iter_mut().zip(loops) {
             surface.handle = edges.iter().map(|e| e.map(|v| apart.origin[v])).collect();
         }

@@ -44,6 +44,8 @@ pub struct Chains {
     pub ties: Vec<Tie>,
     /// The lines that have to be met, in order.
     pub firm: Vec<FirmLine>,
+    /// Closed loops of lines that shall be equally long, two and two.
+    pub twins: Vec<[Vec<usize>; 2]>,
     /// The terms of each halfedge in the order of the lines; an edge's may be on either side.
     terms: Vec<Vec<Term>>,
 }
@@ -130,6 +132,7 @@ impl Complex {
         let mut chains = Chains {
             n_lines: lines.len(),
             ties: Vec::new(),
+            twins: Vec::new(),
             firm: Vec::new(),
             terms: vec![Vec::new(); self.twins.len()],
         };

@@ -20,7 +20,7 @@ use crate::mesh::{HalfedgeId, HalfedgeMap, TriangleMesh, VertexId, VertexMap};
 pub use attract::attract;
 pub use network::Network;
 pub use pick::{Line, are_clear, firm_lines, lines, lines_beside, whole_lines};
-pub use rows::{Firm, Row, rows, tie_rows};
+pub use rows::{Firm, Row, rows, tie_rows, twin_rows};
 pub use seams::{goals, seams};
 
 /// A line that turns by more than this at a vertex has a corner there (53°).

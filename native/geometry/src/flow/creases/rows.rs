@@ -46,6 +46,34 @@ fn tied(complex: &Complex, Tie { lines, turns }: Tie) -> [Vec<f64>; 2] {
     })
 }
 
+/// The equations that make the two loops of twins equally long, one for each two: the sum of
+/// lengths of their lines, each along the axis and in the direction that it is wished to be near.
+pub fn twin_rows(complex: &Complex) -> Vec<Vec<f64>> {
+    let twins = complex.chains.twins.iter().map(|[own, other]| {
+        let [own, other] = [own, other].map(|lines| length_of(complex, lines));
+        own.iter().zip(other).map(|(a, b)| a - b).collect()
+    });
+    twins.collect()
+}
+
+/// The length of a loop of lines as a sum over periods.
+fn length_of(complex: &Complex, lines: &[usize]) -> Vec<f64> {
+    let mut sum = vec![0.0; 2 * complex.coefficients.n_columns()];
+    for &line in lines {
+        let wished = complex.sum_along(line, &complex.wish);
+        let along = match off_axis(wished) {
+            Part::Real => Part::Imaginary,
+            Part::Imaginary => Part::Real,
+        };
+        let sign = along.of(wished).signum();
+        let row = real_row(&complex.coefficients_along(line), along);
+        for (value, part) in sum.iter_mut().zip(row) {
+            *value += sign * part;
+        }
+    }
+    sum
+}
+
 fn row(complex: &Complex, line: usize) -> Option<Row> {
     let wished = complex.sum_along(line, &complex.wish);
     let part: Part = off_axis(wished);

@@ -147,7 +147,7 @@ struct Problem<'a> {
     start: Rounding,
     /// The wanted periods, scaled so that the wish has the wanted area.
     wish: Periods,
-    /// The equations of the ties and lines that are kept.
+    /// The equations of the ties, twins and lines that are kept.
     lines: Vec<Vec<f64>>,
     /// The energy as a square form of periods.
     energy: Dense,
@@ -183,6 +183,7 @@ impl<'a> Problem<'a> {
         let wish = basis.wish.iter().map(|x| x * scale).collect();
         let mut start = Rounding::new(start, wish, covariance.clone());
         let mut kept = creases::tie_rows(complex);
+        kept.append(&mut creases::twin_rows(complex));
         kept.retain(|row| impose_row(&mut start, row));
         let dear = |start: &Rounding, row: &[f64]| {
             let off = dot(row, &start.wish);

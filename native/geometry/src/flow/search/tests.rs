@@ -1,8 +1,9 @@
 //! The search on boxes, of which the best grid is known, and its promises.
 
 use super::*;
-use crate::flow::complex::tests::box_complex;
+use crate::flow::complex::tests::{box_complex, box_mesh};
 use crate::flow::strips::strips;
+use crate::mesh::{HalfedgeId, TriangleMesh, VertexId};
 use crate::progress::CancelToken;
 
 fn settings(n_trials: usize) -> Settings {
@@ -35,6 +36,48 @@ fn other_counts_are_met_and_told_truly() {
         assert!((read.spiral - score.spiral).abs() < 1e-12);
         assert!((read.loops - score.loops).abs() < 1e-12);
         assert_eq!(whole.complex.check(), Ok(()));
+    }
+}
+
+/// The edges round the sides of a box at the end of an axis, each a line of its own.
+fn rim(mesh: &TriangleMesh, axis: usize) -> Vec<HalfedgeId> {
+    let end = mesh.positions().iter().map(|p| p[axis]).fold(0.0, f64::max);
+    let is_at = |v: VertexId| mesh.position(v)[axis] > end - 1e-9;
+    let is_rim = |h: &HalfedgeId| {
+        let ends = [mesh.origin(*h), mesh.target(*h)];
+        let apex = mesh.origin(h.prev());
+        let is_straight = (mesh.position(ends[0]) - mesh.position(ends[1])).abs();
+        let n_axes = (0..3).filter(|&k| is_straight[k] > 1e-9).count();
+        ends.into_iter().all(is_at) && is_at(apex) && n_axes == 1
+    };
+    mesh.halfedge_ids().filter(is_rim).collect()
+}
+
+#[test]
+fn loops_that_are_twins_get_equally_long() {
+    let mesh = box_mesh(1);
+    let rims = [rim(&mesh, 0), rim(&mesh, 2)];
+    for are_twins in [false, true] {
+        let mut complex = box_complex(1);
+        let lines: Vec<_> = rims.iter().flatten().map(|&h| vec![h]).collect();
+        complex.follow_lines(&lines);
+        let loops = [(0..4).collect(), (4..8).collect()];
+        complex.chains.twins = if are_twins { vec![loops] } else { Vec::new() };
+        let whole = quantise(complex, 376, &settings(20), &Progress::none()).unwrap();
+        let lengths = (0..8).map(|line| whole.complex.sum_along(line, &whole.complex.start));
+        let lengths: Vec<f64> = lengths.map(|sum| sum.abs().max_element()).collect();
+        let [x, z]: [f64; 2] = [lengths[..4].iter().sum(), lengths[4..].iter().sum()];
+        // 8 by 6 round the end of the long axis, 10 by 8 round that of the short one.
+        let wanted = if are_twins { x } else { 36.0 };
+        assert!(
+            (z - wanted).abs() < 1e-9 && (are_twins || x < 29.0),
+            "{x} {z}"
+        );
+        assert!(
+            whole.report.score.count_error < 0.06,
+            "{:?}",
+            whole.report.score
+        );
     }
 }
 

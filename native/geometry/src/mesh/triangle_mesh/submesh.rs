@@ -31,6 +31,18 @@ impl TriangleMesh {
     /// # Errors
     /// [`Cancelled`].
     pub fn components(&self, progress: &Progress) -> Result<Vec<Self>, Cancelled> {
+        let components = self.named_components(progress)?.into_iter();
+        Ok(components.map(|(mesh, _)| mesh).collect())
+    }
+
+    /// The same, and for each of their vertices the one that it was.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn named_components(
+        &self,
+        progress: &Progress,
+    ) -> Result<Vec<(Self, Vec<VertexId>)>, Cancelled> {
         let (component, n) = self.face_components();
         progress.check()?;
         let mut faces: Vec<Vec<[VertexId; 3]>> = vec![Vec::new(); n];
@@ -43,7 +55,7 @@ impl TriangleMesh {
         for faces in faces {
             progress.check()?;
             let made = compact(self.positions(), faces, &mut names);
-            components.push(made.expect("a component of a mesh is a mesh").0);
+            components.push(made.expect("a component of a mesh is a mesh"));
         }
         Ok(components)
     }
@@ -86,6 +98,11 @@ mod tests {
         let faces: Vec<_> = faces.chain(rest.iter().map(|f| f.1)).collect();
         let whole = TriangleMesh::new(positions, faces).unwrap();
         let parts = whole.components(&Progress::none()).unwrap();
+        for (part, sources) in whole.named_components(&Progress::none()).unwrap() {
+            for v in part.vertex_ids() {
+                assert_eq!(part.position(v), whole.position(sources[v.index()]));
+            }
+        }
         let counts: Vec<_> = parts.iter().map(TriangleMesh::n_vertices).collect();
         assert_eq!(counts, [b.n_vertices(), a.n_vertices()]);
         let triangles = |mesh: &TriangleMesh| -> Vec<[DVec3; 3]> {
