@@ -27,6 +27,10 @@ pub struct Report {
     pub n_reoriented: usize,
     /// Vertices added where several fans of faces met at one.
     pub n_split: usize,
+    /// Edges of more than two faces at which surfaces were parted into sheets.
+    pub n_shared_edges: usize,
+    /// The sheets that meet there.
+    pub n_sheets: usize,
 }
 
 impl Report {
@@ -87,6 +91,17 @@ impl Report {
         .into_iter()
         .filter(|(n, _, _)| *n > 0)
         .map(|(n, one, many)| format!("{n} {}", if n == 1 { one } else { many }));
-        seams.into_iter().chain(counted).collect()
+        let parted = (self.n_shared_edges > 0).then(|| {
+            let edges = counted_in_words(self.n_shared_edges, "edge");
+            let sheets = counted_in_words(self.n_sheets, "sheet");
+            format!("{edges} of three or more faces parted into {sheets}")
+        });
+        seams.into_iter().chain(counted).chain(parted).collect()
     }
+}
+
+/// A number of things.
+fn counted_in_words(n: usize, what: &str) -> String {
+    let ending = if n == 1 { "" } else { "s" };
+    format!("{n} {what}{ending}")
 }

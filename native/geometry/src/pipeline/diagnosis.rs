@@ -50,6 +50,7 @@ struct Surface {
     n_vertices: usize,
     n_triangles: usize,
     n_loops: usize,
+    n_border: usize,
     border: Vec<[VertexId; 2]>,
     /// A loop of a handle, if there is one.
     handle: Vec<[VertexId; 2]>,
@@ -78,7 +79,10 @@ fn surfaces(apart: &Apart, component: &[u32], n: usize) -> Vec<Surface> {
         let surface = &mut surfaces[of(border[0])];
         surface.n_loops += 1;
         let ends = |&h: &HalfedgeId| [mesh.origin(h), mesh.target(h)].map(|v| apart.origin[v]);
-        surface.border.extend(border.iter().map(ends));
+        surface.n_border += border.len();
+        // Of an edge that was cut in the middle one half has both ends of the input's.
+        let is_edge = |[a, b]: &[VertexId; 2]| a != b;
+        surface.border.extend(border.iter().map(ends).filter(is_edge));
     }
     surfaces
 }
@@ -95,7 +99,7 @@ fn has_area(mesh: &TriangleMesh, face: FaceId) -> bool {
 impl Surface {
     /// Half of what the Euler number lacks to that of a sphere with as many holes.
     fn genus(&self) -> i64 {
-        let n_edges = usize::midpoint(3 * self.n_triangles, self.border.len());
+        let n_edges = usize::midpoint(3 * self.n_triangles, self.n_border);
         let euler = self.n_vertices as i64 - n_edges as i64 + self.n_triangles as i64;
         (2 - self.n_loops as i64 - euler) / 2
     }
@@ -131,16 +135,14 @@ impl Told<'_> {
     }
 
     fn of_tangle(&self, tangle: &Tangle) -> Vec<Reason> {
-        let shared = self.shared(tangle);
         let border = self.border(&tangle.faces, n_loops(&tangle.border), &tangle.border);
-        let one_sided = tangle.one_sided.map(|[a, b]| {
-            let text = format!(
-                "the surface cannot be oriented (it has one side, like a moebius strip): faces \
-                 disagree along the edge between vertices {a} and {b} whichever way they are turned"
-            );
-            Reason::new(self.mesh, &tangle.faces, &[[a, b]], Flaw::OneSided, text)
-        });
-        [shared, one_sided, border].into_iter().flatten().collect()
+        let [a, b] = tangle.one_sided;
+        let text = format!(
+            "the surface cannot be oriented (it has one side, like a moebius strip): faces \
+             disagree along the edge between vertices {a} and {b} whichever way they are turned"
+        );
+        let one_sided = Reason::new(self.mesh, &tangle.faces, &[[a, b]], Flaw::OneSided, text);
+        std::iter::once(one_sided).chain(border).collect()
     }
 
     fn border(&self, faces: &[FaceId], n_loops: usize, edges: &[[VertexId; 2]]) -> Option<Reason> {
@@ -155,22 +157,6 @@ impl Told<'_> {
         );
         let flaw = Flaw::Border { n_loops, n_edges };
         (n_edges > 0).then(|| Reason::new(self.mesh, faces, edges, flaw, text))
-    }
-
-    fn shared(&self, tangle: &Tangle) -> Option<Reason> {
-        let first = tangle.shared.first()?;
-        let [n_faces, n_edges] = [first.n_faces, tangle.shared.len()];
-        let [a, b] = first.ends;
-        let more = match n_edges {
-            1 => String::new(),
-            _ => format!(" ({n_edges} edges of the part have more than 2 faces)"),
-        };
-        let text = format!(
-            "{n_faces} faces meet at the edge between vertices {a} and {b}; at most 2 can{more}"
-        );
-        let edges: Vec<_> = tangle.shared.iter().map(|edge| edge.ends).collect();
-        let flaw = Flaw::SharedEdges { n_edges, n_faces };
-        Some(Reason::new(self.mesh, &tangle.faces, &edges, flaw, text))
     }
 
     fn flat(&self, surface: &Surface) -> Option<Reason> {
