@@ -114,8 +114,13 @@ fn built(
     turned: &Turned,
     progress: &Progress,
 ) -> Result<(Apart, Vec<SharedLine>), Error> {
-    let middles = parted.is_crowded.then(|| sheets::split_at_middles(&mut triangulated, &parted.twins));
-    let compacted = compact(&triangulated.positions, std::mem::take(&mut triangulated.faces));
+    let middles = parted
+        .is_crowded
+        .then(|| sheets::split_at_middles(&mut triangulated, &parted.twins));
+    let compacted = compact(
+        &triangulated.positions,
+        std::mem::take(&mut triangulated.faces),
+    );
     let origin = compacted.was.iter();
     let origin = origin.map(|v| triangulated.origins[v.index()]).collect();
     progress.at(0.95)?;

@@ -348,7 +348,9 @@ fn count_vertices(names: &[VertexId], polygons: &Polygons, report: &mut Report) 
 
 /// Refuses sheets that meet, which as one mesh would come apart, and tangles.
 fn refuse(shared: &[SharedLine], tangles: &[Tangle]) -> Result<(), Error> {
-    let edges = shared.iter().flat_map(|line| line.edges().map(|ends| (ends, line.n_faces)));
+    let edges = shared
+        .iter()
+        .flat_map(|line| line.edges().map(|ends| (ends, line.n_faces)));
     if let Some(([a, b], n_faces)) = edges.min() {
         return Err(Error::NonManifoldEdge { n_faces, a, b });
     }

@@ -1,9 +1,11 @@
 //! What keeps each part of a mesh from being remeshed: all of it, with numbers.
 
+use std::collections::HashSet;
+
 use super::kept::{Flaw, Reason, count};
 use super::split::Part;
 use super::{Settings, handle};
-use crate::clean::{self, Apart, Tangle};
+use crate::clean::{self, Apart, SharedLine, Tangle};
 use crate::groups::Groups;
 use crate::mesh::{FaceId, HalfedgeId, Id, PolygonMesh, TriangleMesh, VertexId};
 
@@ -19,6 +21,7 @@ pub fn parts(
             .weld
             .filter(|_| apart.is_open())
             .map(|share| clean::distance(mesh, share)),
+        shared: apart.shared.iter().flat_map(SharedLine::edges).collect(),
     };
     let mut surfaces = surfaces(apart, component, n);
     if surfaces.iter().any(|surface| surface.genus() != 0) {
@@ -82,7 +85,9 @@ fn surfaces(apart: &Apart, component: &[u32], n: usize) -> Vec<Surface> {
         surface.n_border += border.len();
         // Of an edge that was cut in the middle one half has both ends of the input's.
         let is_edge = |[a, b]: &[VertexId; 2]| a != b;
-        surface.border.extend(border.iter().map(ends).filter(is_edge));
+        surface
+            .border
+            .extend(border.iter().map(ends).filter(is_edge));
     }
     surfaces
 }
@@ -110,6 +115,8 @@ struct Told<'a> {
     mesh: &'a PolygonMesh,
     /// Up to which gap borders were welded, where they were.
     reach: Option<f64>,
+    /// The edges of more than two faces.
+    shared: HashSet<[VertexId; 2]>,
 }
 
 impl Told<'_> {
@@ -147,13 +154,18 @@ impl Told<'_> {
 
     fn border(&self, faces: &[FaceId], n_loops: usize, edges: &[[VertexId; 2]]) -> Option<Reason> {
         let n_edges = edges.len();
+        let is_shared = |[a, b]: &&[VertexId; 2]| self.shared.contains(&[*a.min(b), *a.max(b)]);
+        let shared = match edges.iter().filter(is_shared).count() {
+            0 => String::new(),
+            n => format!(" ({n} of them where 3 or more faces meet)"),
+        };
         let [loops, borders] = [count(n_loops, "border loop"), count(n_edges, "border edge")];
         let weld = match self.reach {
             Some(reach) => format!("; borders farther apart than {reach:.2e} are not welded"),
             None => "; only equal points are welded".to_owned(),
         };
         let text = format!(
-            "{loops}, {borders}: only closed meshes can be done; fill the holes first{weld}"
+            "{loops}, {borders}{shared}: only closed meshes can be done; fill the holes first{weld}"
         );
         let flaw = Flaw::Border { n_loops, n_edges };
         (n_edges > 0).then(|| Reason::new(self.mesh, faces, edges, flaw, text))

@@ -56,7 +56,12 @@ pub(in super::super) fn split_at_middles(
         let third = corners.map(|v| triangulated.positions[v.index()] / 3.0);
         let centre = triangulated.add(third.into_iter().sum(), corners[0]);
         let next = around.iter().cycle().skip(1);
-        pieces.extend(around.iter().zip(next).map(|(&a, &b)| (face, [centre, a, b])));
+        pieces.extend(
+            around
+                .iter()
+                .zip(next)
+                .map(|(&a, &b)| (face, [centre, a, b])),
+        );
     }
     if !at.is_empty() {
         triangulated.replace(&pieces);

@@ -82,10 +82,17 @@ pub(super) fn part(soup: &Soup, pairing: Pairing) -> Parted {
     let mut facing = Facing::new(triangulated.faces.len());
     for run in soup.edges.runs() {
         if let [g, h] = *run {
-            facing.link([g, h].map(HalfedgeId::face), is_against(triangulated, [g, h]));
+            facing.link(
+                [g, h].map(HalfedgeId::face),
+                is_against(triangulated, [g, h]),
+            );
         }
     }
-    shared.extend(not_touching(triangulated, (&mut twins, touching), &mut facing));
+    shared.extend(not_touching(
+        triangulated,
+        (&mut twins, touching),
+        &mut facing,
+    ));
     let mut pages = Pages {
         triangulated,
         lines: lines::chained(triangulated, &twins, &shared),
@@ -187,9 +194,8 @@ impl Pages<'_> {
         let mut all = Vec::new();
         for line in 0..self.lines.len() {
             let n = self.lines[line].n_pages();
-            let mut bodies: Vec<(usize, usize)> = (0..n)
-                .map(|page| (self.group(line, page), page))
-                .collect();
+            let mut bodies: Vec<(usize, usize)> =
+                (0..n).map(|page| (self.group(line, page), page)).collect();
             bodies.sort_unstable();
             let bodies: Vec<_> = bodies.chunk_by(|a, b| a.0 == b.0).collect();
             if n > 2 && bodies.iter().all(|body| body.len() == 2) {
@@ -248,9 +254,8 @@ impl Pages<'_> {
             return;
         }
         let sides = |edge: &LineEdge| [edge.pages[a], edge.pages[b]];
-        let relation = |sides: [HalfedgeId; 2]| {
-            (sides.map(HalfedgeId::face), is_against(triangulated, sides))
-        };
+        let relation =
+            |sides: [HalfedgeId; 2]| (sides.map(HalfedgeId::face), is_against(triangulated, sides));
         let relations = line.edges.iter().map(sides).map(relation);
         let may_link = |(faces, against)| self.facing.may_link(faces, against);
         if !relations.clone().all(may_link) {

@@ -57,23 +57,19 @@ impl Quads {
         book
     }
 
-    /// A strip that turns by half on its way round.
-    fn moebius() -> Self {
+    /// A strip of so many faces across that turns by half on its way round.
+    fn moebius(width: u32) -> Self {
         let n = 12;
-        let rung = |i: u32| {
+        let at = |i: u32, j: u32| {
             let turn = f64::from(i % n) / f64::from(n) * std::f64::consts::TAU;
-            let side = |across: f64| {
-                let radius = 2.0 + across * cos(turn / 2.0);
-                let round = direction(turn) * radius;
-                round.extend(across * sin(turn / 2.0))
-            };
-            let sides = if i < n { [-0.5, 0.5] } else { [0.5, -0.5] };
-            sides.map(side)
+            let j = if i < n { j } else { width - j };
+            let across = f64::from(j) / f64::from(width) - 0.5;
+            let round = direction(turn) * (2.0 + across * cos(turn / 2.0));
+            round.extend(across * sin(turn / 2.0))
         };
         let mut strip = Self::default();
-        for i in 0..n {
-            let ([a, b], [d, c]) = (rung(i), rung(i + 1));
-            strip.add(&[a, d, c, b]);
+        for (i, j) in (0..n).flat_map(|i| (0..width).map(move |j| (i, j))) {
+            strip.add(&[at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
         }
         strip
     }
@@ -93,9 +89,17 @@ impl Quads {
 fn check(mesh: &PolygonMesh, apart: &Apart) {
     assert_eq!(apart.mesh.check(), Ok(()));
     let mut faces: Vec<u32> = sheets(apart).into_iter().flatten().collect();
-    faces.extend(apart.tangles.iter().flat_map(|tangle| tangle.faces.iter().map(|f| f.0)));
+    faces.extend(
+        apart
+            .tangles
+            .iter()
+            .flat_map(|tangle| tangle.faces.iter().map(|f| f.0)),
+    );
     faces.sort_unstable();
-    assert!(faces.iter().copied().eq(0..mesh.n_faces() as u32), "{faces:?}");
+    assert!(
+        faces.iter().copied().eq(0..mesh.n_faces() as u32),
+        "{faces:?}"
+    );
     let component = apart.mesh.face_components().0;
     for line in &apart.shared {
         for strand in &line.strands {
@@ -147,7 +151,10 @@ fn the_through_wall_of_a_t_is_one_sheet_and_the_stem_another() {
         let [line] = &apart.shared[..] else {
             panic!("{:?}", apart.shared);
         };
-        assert_eq!((line.vertices.len(), line.n_faces, line.is_closed), (3, 3, false));
+        assert_eq!(
+            (line.vertices.len(), line.n_faces, line.is_closed),
+            (3, 3, false)
+        );
         let ends: Vec<bool> = line.strands.iter().map(|strand| strand.is_border).collect();
         assert_eq!(ends.iter().filter(|&&ends| ends).count(), 1);
         let report = apart.report;
@@ -158,20 +165,20 @@ fn the_through_wall_of_a_t_is_one_sheet_and_the_stem_another() {
 }
 
 #[test]
-fn crossed_planes_are_two_planes_whichever_way_their_halves_are_turned() {
-    for turned in [[false; 2], [true, false], [true, true]] {
+fn crossed_planes_are_two_planes_unless_all_halves_are_turned_as_sides_of_solids() {
+    for turned in 0..16_u32 {
+        let is_turned = |page: usize| turned >> page & 1 == 1;
         let mut planes = Quads::book([0, 90, 180, 270]);
-        for half in (0..2).filter(|&i| turned[i]) {
-            planes.faces[4 * half..4 * half + 2].iter_mut().for_each(|f| f.reverse());
+        for page in (0..4).filter(|&page| is_turned(page)) {
+            let faces = &mut planes.faces[2 * page..2 * page + 2];
+            faces.iter_mut().for_each(|face| face.reverse());
         }
         let apart = planes.apart();
-        if apart.shared.is_empty() {
-            // Turned so, the quarters are sides of solids, which do not cross.
-            assert_eq!(turned, [false; 2]);
-            continue;
-        }
+        // What lies between the two sides of a solid is told by their turns alone.
+        let alternates = (0..4).all(|page| is_turned(page) != is_turned((page + 1) % 4));
+        assert_eq!(apart.shared.is_empty(), alternates, "{turned:04b}");
         let both: Vec<BTreeSet<u32>> = [[0, 1, 4, 5], [2, 3, 6, 7]].map(BTreeSet::from).into();
-        assert_eq!(sheets(&apart), both, "{turned:?}");
+        assert_eq!(sheets(&apart) == both, !alternates, "{turned:04b}");
     }
 }
 
@@ -208,7 +215,9 @@ fn a_box_with_a_wall_from_edge_to_edge_or_a_fin_on_its_edge_stays_closed() {
         let points = face.iter().map(|&v| walled.points[v as usize]);
         let level = points.clone().all(|p| p.z == 0.0) || points.clone().all(|p| p.z == 1.0);
         if level {
-            let at = face.iter().position(|&v| walled.points[v as usize].truncate().length() < 0.1);
+            let at = face
+                .iter()
+                .position(|&v| walled.points[v as usize].truncate().length() < 0.1);
             let corner = |i: usize| face[(at.unwrap() + i) % 4];
             let halves = [[0, 1, 2], [0, 2, 3]].map(|half| half.map(corner).to_vec());
             walled.faces.retain(|other| other != face);
@@ -241,7 +250,10 @@ fn blocks_at_an_edge_part_inside_out_too() {
 #[test]
 fn of_three_fins_two_go_on_and_of_six_pages_all_that_do_not_fold() {
     assert_eq!(sizes(&Quads::book([0, 120, 240]).apart()), [2, 4]);
-    assert_eq!(sizes(&Quads::book([0, 60, 120, 180, 240, 300]).apart()), [4, 4, 4]);
+    assert_eq!(
+        sizes(&Quads::book([0, 60, 120, 180, 240, 300]).apart()),
+        [4, 4, 4]
+    );
     assert_eq!(sizes(&Quads::book([0, 10, 20, 30, 40, 50]).apart()), [2; 6]);
 }
 
@@ -265,22 +277,23 @@ fn a_line_is_decided_as_a_whole() {
 
 #[test]
 fn what_has_one_side_only_is_cut_or_stays_a_tangle() {
-    let strip = Quads::moebius();
-    let apart = strip.apart();
+    let apart = Quads::moebius(1).apart();
     assert_eq!((apart.tangles.len(), apart.mesh.n_faces()), (1, 0));
-    // With a fin on one of its rungs it ends there.
-    let mut finned = Quads::moebius();
+    // With a fin across it is cut there.
+    let mut finned = Quads::moebius(1);
     let [a, b] = [1.5, 2.5].map(|x| DVec3::new(x, 0.0, 0.0));
-    finned.add(&[a, b, b + DVec3::Y * 0.1 + DVec3::Z, a + DVec3::Y * 0.1 + DVec3::Z]);
+    let up = DVec3::Y * 0.1 + DVec3::Z;
+    finned.add(&[a, b, b + up, a + up]);
     let apart = finned.apart();
     assert!(apart.tangles.is_empty());
     assert_eq!(apart.shared.len(), 1);
-    // With a fin on its rim it has one side all the same, but the fin is a sheet.
-    let mut finned = Quads::moebius();
-    let [a, b] = [0, 3].map(|i| finned.points[i]);
+    // With a fin along its middle it has one side all the same, but the fin is a sheet.
+    let mut finned = Quads::moebius(2);
+    let [a, b] = [0, 2].map(|i| finned.points[finned.faces[i][2] as usize]);
     finned.add(&[a, b, b + DVec3::Z * 2.0, a + DVec3::Z * 2.0]);
     let apart = finned.apart();
     assert_eq!((apart.tangles.len(), sizes(&apart)), (1, vec![1]));
+    assert_eq!(apart.shared[0].strands.len(), 1);
 }
 
 #[test]
@@ -297,7 +310,11 @@ fn random_faces(seed: u64) -> Quads {
     let n_of_ten = 2 + random.below(7);
     for i in 0..27 {
         let at = DVec3::new(f64::from(i % 3), f64::from(i / 3 % 3), f64::from(i / 9));
-        for [a, b] in [[DVec3::X, DVec3::Y], [DVec3::Y, DVec3::Z], [DVec3::Z, DVec3::X]] {
+        for [a, b] in [
+            [DVec3::X, DVec3::Y],
+            [DVec3::Y, DVec3::Z],
+            [DVec3::Z, DVec3::X],
+        ] {
             if random.below(10) < n_of_ten {
                 let mut corners = [at, at + a, at + a + b, at + b];
                 if random.below(4) == 0 {
@@ -323,7 +340,10 @@ fn every_face_is_in_one_sheet_whatever_the_order() {
         }
         quads.faces = order.iter().map(|&i| quads.faces[i].clone()).collect();
         let was = |sheet: BTreeSet<u32>| -> BTreeSet<u32> {
-            sheet.into_iter().map(|f| order[f as usize] as u32).collect()
+            sheet
+                .into_iter()
+                .map(|f| order[f as usize] as u32)
+                .collect()
         };
         let again: BTreeSet<_> = sheets(&quads.apart()).into_iter().map(was).collect();
         assert_eq!(again, sheets(&apart).into_iter().collect(), "seed {seed}");
