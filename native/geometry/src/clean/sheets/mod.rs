@@ -3,10 +3,11 @@
 //! Along each line of shared edges pages are paired, the whole line in one way; what is left over
 //! ends there. In turn:
 //!
-//! 1. where each surface that meets there has two pages, they are each other's: bodies that touch;
+//! 1. where each surface that meets there has two pages, they are each other's (bodies that touch),
+//!    and those of a surface that has no border but these pages (a body with a fin);
 //! 2. pages that go on into each other within 30 degrees, the smoothest first, over all lines;
-//! 3. other pages, those first that have become one sheet elsewhere (a box with a fin on its edge
-//!    stays closed), then by their turn again, as long as it is no fold.
+//! 3. other pages, those first that have become one sheet elsewhere (a box with a wall from edge
+//!    to edge stays closed), then by their turn again, as long as it is no fold.
 //!
 //! A turn is the mean along the line. No pair is made that would give a sheet one side only. Where
 //! a surface has but one side without any shared edge, nothing can be done: it stays a tangle.
@@ -21,7 +22,7 @@ mod turns;
 
 use std::f64::consts::{FRAC_PI_3, FRAC_PI_6};
 
-use super::edges::Twins;
+use super::edges::{Edges, Twins};
 use super::mend::Soup;
 use super::pairs::Pairing;
 use super::triangulate::Triangulated;
@@ -99,7 +100,7 @@ pub(super) fn part(soup: &Soup, pairing: Pairing) -> Parted {
         twins,
         facing,
     };
-    pages.pair_bodies();
+    pages.pair_bodies(&soup.edges);
     pages.pair_by_turn();
     Parted {
         twins: pages.twins,
@@ -174,6 +175,12 @@ fn fans(triangulated: &Triangulated, twins: &Twins) -> Groups {
     groups
 }
 
+/// A surface at a line, before anything is paired there.
+struct Surface {
+    group: usize,
+    pages: Vec<usize>,
+}
+
 /// The pages of all lines while they are paired.
 struct Pages<'a> {
     triangulated: &'a Triangulated,
@@ -189,22 +196,45 @@ impl Pages<'_> {
         self.facing.place(face).group
     }
 
-    /// Pairs the pages of lines where each surface has two.
-    fn pair_bodies(&mut self) {
-        let mut all = Vec::new();
-        for line in 0..self.lines.len() {
-            let n = self.lines[line].n_pages();
-            let mut bodies: Vec<(usize, usize)> =
-                (0..n).map(|page| (self.group(line, page), page)).collect();
-            bodies.sort_unstable();
-            let bodies: Vec<_> = bodies.chunk_by(|a, b| a.0 == b.0).collect();
-            if n > 2 && bodies.iter().all(|body| body.len() == 2) {
-                all.extend(bodies.iter().map(|body| (line, [body[0].1, body[1].1])));
+    /// Pairs the pages of lines where each surface has two, and those of surfaces that close so.
+    fn pair_bodies(&mut self, edges: &Edges) {
+        let mut closes = vec![true; self.triangulated.faces.len()];
+        for run in edges.runs().filter(|run| run.len() == 1) {
+            closes[self.facing.place(run[0].face()).group] = false;
+        }
+        let surfaces: Vec<_> = (0..self.lines.len())
+            .map(|line| self.surfaces(line))
+            .collect();
+        for surface in surfaces
+            .iter()
+            .flatten()
+            .filter(|surface| surface.pages.len() != 2)
+        {
+            closes[surface.group] = false;
+        }
+        for (line, surfaces) in surfaces.iter().enumerate() {
+            let are_bodies = surfaces.iter().all(|surface| surface.pages.len() == 2);
+            let bodies = surfaces.iter().filter(|s| are_bodies || closes[s.group]);
+            for body in bodies {
+                self.pair(line, [body.pages[0], body.pages[1]]);
             }
         }
-        for (line, pages) in all {
-            self.pair(line, pages);
+    }
+
+    /// The surfaces that meet at a line.
+    fn surfaces(&mut self, line: usize) -> Vec<Surface> {
+        let mut surfaces: Vec<Surface> = Vec::new();
+        for page in 0..self.lines[line].n_pages() {
+            let group = self.group(line, page);
+            match surfaces.iter_mut().find(|surface| surface.group == group) {
+                Some(surface) => surface.pages.push(page),
+                None => surfaces.push(Surface {
+                    group,
+                    pages: vec![page],
+                }),
+            }
         }
+        surfaces
     }
 
     /// Pairs pages by their turn: the smooth ones, then the others.

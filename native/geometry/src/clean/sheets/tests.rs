@@ -225,13 +225,15 @@ fn a_box_with_a_wall_from_edge_to_edge_or_a_fin_on_its_edge_stays_closed() {
         }
     }
     assert_eq!(sizes(&walled.apart()), [1, 8]);
-    let mut finned = Quads::default();
-    finned.cube(DVec3::ZERO);
-    let away = DVec3::new(-1.0, -1.0, 0.0);
-    finned.add(&[DVec3::ZERO, DVec3::Z, away + DVec3::Z, away]);
-    let apart = finned.apart();
-    assert_eq!(sizes(&apart), [1, 6]);
-    assert_eq!(apart.mesh.border_loops().len(), 1);
+    for away in [[-1.0, -1.0], [-1.0, 0.3]] {
+        let mut finned = Quads::default();
+        finned.cube(DVec3::ZERO);
+        let away = DVec3::new(away[0], away[1], 0.0);
+        finned.add(&[DVec3::ZERO, DVec3::Z, away + DVec3::Z, away]);
+        let apart = finned.apart();
+        assert_eq!(sizes(&apart), [1, 6]);
+        assert_eq!(apart.mesh.border_loops().len(), 1);
+    }
 }
 
 #[test]
