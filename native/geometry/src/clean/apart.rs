@@ -86,8 +86,8 @@ pub(super) fn sort(
     let (tangles, is_sound) = tangles(&soup, &parted.twins, &one_sided);
     let before = std::mem::replace(&mut soup.triangulated.faces, faces);
     let pairs = before.iter().zip(&soup.triangulated.faces);
-    let is_turned: Vec<bool> = pairs.map(|(a, b)| a != b).collect();
-    let turned = is_turned.iter().zip(&is_sound);
+    let is_reversed: Vec<bool> = pairs.map(|(a, b)| a != b).collect();
+    let turned = is_reversed.iter().zip(&is_sound);
     report.n_reoriented = turned.filter(|(turned, sound)| **turned && **sound).count();
     if !tangles.is_empty() {
         parted.twins.keep(&is_sound);
@@ -97,7 +97,7 @@ pub(super) fn sort(
     report.n_split = fans::split(&mut soup.triangulated, &parted.twins);
     let turned = Turned {
         before,
-        is_turned,
+        is_reversed,
         is_sound,
     };
     let (mut apart, shared) = built(soup.triangulated, &parted, &turned, progress)?;

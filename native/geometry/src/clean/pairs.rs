@@ -36,7 +36,9 @@ impl Pairing {
                 [g, h] => twins.link(g, h),
                 _ => match solids(run, triangulated) {
                     Some(pairs) => {
-                        pairs.iter().for_each(|&[g, h]| twins.link(g, h));
+                        for &[g, h] in &pairs {
+                            twins.link(g, h);
+                        }
                         touching.push(pairs);
                     }
                     None => shared.push(run.to_vec()),

@@ -91,17 +91,24 @@ impl Report {
         .into_iter()
         .filter(|(n, _, _)| *n > 0)
         .map(|(n, one, many)| format!("{n} {}", if n == 1 { one } else { many }));
-        let parted = (self.n_shared_edges > 0).then(|| {
-            let edges = counted_in_words(self.n_shared_edges, "edge");
-            let sheets = counted_in_words(self.n_sheets, "sheet");
-            format!("{edges} of three or more faces parted into {sheets}")
-        });
-        seams.into_iter().chain(counted).chain(parted).collect()
+        seams
+            .into_iter()
+            .chain(counted)
+            .chain(self.parted())
+            .collect()
+    }
+
+    /// What was parted into sheets.
+    fn parted(&self) -> Option<String> {
+        let edges = counted(self.n_shared_edges, "edge");
+        let sheets = counted(self.n_sheets, "sheet");
+        let told = || format!("{edges} of three or more faces parted into {sheets}");
+        (self.n_shared_edges > 0).then(told)
     }
 }
 
 /// A number of things.
-fn counted_in_words(n: usize, what: &str) -> String {
+fn counted(n: usize, what: &str) -> String {
     let ending = if n == 1 { "" } else { "s" };
     format!("{n} {what}{ending}")
 }

@@ -4,11 +4,11 @@ mod carried;
 #[path = "../common/mod.rs"]
 mod common;
 mod mixed;
+mod sheets;
 
 use glam::DVec3;
 use mixed::{
     Mixed, ball, cube, kinds, moebius_strip, remesh, settings, split_along, touching_blocks,
-    walled_box,
 };
 use orbflow_geometry::embed::{OffsetPredictor, PredictError, Proposal, Solver};
 use orbflow_geometry::hierarchy::CollapseHierarchy;
@@ -129,32 +129,6 @@ fn every_reason_of_every_part_is_told_when_none_can_be_done() {
     assert!(handle.edges.len() >= 3 && matches!(handle.flaw, Flaw::Handles { genus: 1 }));
     assert_eq!(kept[2].reasons[0].edges.len(), 1);
     assert_eq!(kept[2].reasons[1].edges.len(), 24);
-}
-
-#[test]
-fn a_box_with_a_wall_is_done_and_the_wall_stays() {
-    let mesh = walled_box(DVec3::ZERO).mesh();
-    let result = remesh(&mesh, &settings(100)).unwrap();
-    stays(&result, &mesh, [10]);
-    let report = &result.report;
-    assert_eq!((report.parts.len(), report.kept.len()), (1, 1));
-    assert_eq!((report.clean.n_shared_edges, report.clean.n_sheets), (4, 2));
-    let told = "4 edges of three or more faces parted into 2 sheets";
-    assert!(report.clean.sentences().contains(&told.to_owned()));
-    let reason = &report.kept[0].reasons[0];
-    assert_eq!((kinds(&report.kept[0]).len(), reason.edges.len()), (1, 4));
-    assert!(
-        reason
-            .text
-            .starts_with("1 border loop, 4 border edges (4 of them where 3"),
-        "{}",
-        reason.text
-    );
-    let strict = Settings {
-        strict: true,
-        ..settings(100)
-    };
-    assert_eq!(refused(&mesh, &strict).0.len(), 1);
 }
 
 #[test]

@@ -121,40 +121,40 @@ fn not_touching(
     (twins, touching): (&mut Twins, Vec<Vec<[HalfedgeId; 2]>>),
     facing: &mut Facing,
 ) -> Vec<Vec<HalfedgeId>> {
-    let mut refused = Vec::new();
-    let mut left = Vec::new();
-    for pairs in touching {
-        let is_done = pairs.iter().all(|pair| {
-            let faces = pair.map(HalfedgeId::face);
-            let may = facing.may_link(faces, false);
-            if may {
-                facing.link(faces, false);
-            }
-            may
-        });
-        if is_done {
-            left.push(pairs);
-        } else {
-            pairs.iter().for_each(|&pair| twins.part(pair));
-            refused.push(pairs);
+    let mut links = |pair: &[HalfedgeId; 2]| {
+        let faces = pair.map(HalfedgeId::face);
+        let may = facing.may_link(faces, false);
+        if may {
+            facing.link(faces, false);
         }
+        may
+    };
+    let is_linked = |pairs: &Vec<[HalfedgeId; 2]>| pairs.iter().all(&mut links);
+    let (left, mut refused): (Vec<_>, Vec<_>) = touching.into_iter().partition(is_linked);
+    for &pair in refused.iter().flatten() {
+        twins.part(pair);
     }
     let mut fans = fans(triangulated, twins);
     for pairs in left {
-        let mut ends: Vec<[usize; 2]> = pairs
-            .iter()
-            .map(|&[h, _]| [h, h.next()].map(|corner| fans.root(corner.index())))
-            .map(|[a, b]| [a.min(b), a.max(b)])
-            .collect();
+        let ends = |&[h, _]: &[HalfedgeId; 2]| {
+            let [a, b] = [h, h.next()].map(|corner| fans.root(corner.index()));
+            [a.min(b), a.max(b)]
+        };
+        let mut ends: Vec<[usize; 2]> = pairs.iter().map(ends).collect();
         ends.sort_unstable();
         if ends.windows(2).any(|w| w[0] == w[1]) {
-            pairs.iter().for_each(|&pair| twins.part(pair));
+            for &pair in &pairs {
+                twins.part(pair);
+            }
             refused.push(pairs);
         }
     }
-    let mut refused: Vec<Vec<HalfedgeId>> = refused.into_iter().map(|run| run.concat()).collect();
-    refused.iter_mut().for_each(|run| run.sort_unstable());
-    refused
+    let run = |pairs: Vec<[HalfedgeId; 2]>| {
+        let mut run = pairs.concat();
+        run.sort_unstable();
+        run
+    };
+    refused.into_iter().map(run).collect()
 }
 
 /// The fan of each corner of the triangles.

@@ -46,8 +46,8 @@ impl SharedLine {
 pub(in super::super) struct Turned {
     /// The triangles as they were.
     pub(in super::super) before: Vec<[VertexId; 3]>,
-    /// Which of them were turned.
-    pub(in super::super) is_turned: Vec<bool>,
+    /// Which of them were turned round.
+    pub(in super::super) is_reversed: Vec<bool>,
     /// Which of them are left.
     pub(in super::super) is_sound: Vec<bool>,
 }
@@ -147,14 +147,14 @@ impl Sorted<'_> {
         let name = self.name[old]?;
         // Turned triangles are `a c b`.
         let corner = match h.corner() {
-            corner if self.turned.is_turned[old] => 2 - corner,
+            corner if self.turned.is_reversed[old] => 2 - corner,
             corner => corner,
         };
         let h_now = HalfedgeId::from_index(3 * name.index() + corner);
         let face = self.middles.faces[name.index()];
         let mut ends = [face[corner], face[h_now.next().corner()]];
         let left = self.turned.before[old][h.corner()] == from;
-        if left == self.turned.is_turned[old] {
+        if left == self.turned.is_reversed[old] {
             ends.reverse();
         }
         let middle = self.middles.at.get(&h_now).copied();

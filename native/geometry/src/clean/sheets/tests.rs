@@ -171,7 +171,9 @@ fn crossed_planes_are_two_planes_unless_all_halves_are_turned_as_sides_of_solids
         let mut planes = Quads::book([0, 90, 180, 270]);
         for page in (0..4).filter(|&page| is_turned(page)) {
             let faces = &mut planes.faces[2 * page..2 * page + 2];
-            faces.iter_mut().for_each(|face| face.reverse());
+            for face in faces {
+                face.reverse();
+            }
         }
         let apart = planes.apart();
         // What lies between the two sides of a solid is told by their turns alone.
@@ -212,8 +214,8 @@ fn a_box_with_a_wall_from_edge_to_edge_or_a_fin_on_its_edge_stays_closed() {
     walled.add(&[DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0), DVec3::ONE, DVec3::Z]);
     // The lid and the floor are cut where the wall meets them.
     for face in walled.faces.clone().iter().filter(|f| f.len() == 4) {
-        let points = face.iter().map(|&v| walled.points[v as usize]);
-        let level = points.clone().all(|p| p.z == 0.0) || points.clone().all(|p| p.z == 1.0);
+        let height = |v: &u32| walled.points[*v as usize].z.to_bits();
+        let level = face.iter().all(|v| height(v) == height(&face[0]));
         if level {
             let at = face
                 .iter()
