@@ -27,7 +27,6 @@ _CLEANED = (
 OF_MANY = {
     "border": "with holes (open edges)",
     "handles": "with a hole through it like a ring or cup handle",
-    "shared-edges": "with edges at which 3 or more faces meet",
     "one-sided": "whose inside and outside cannot be told apart (like a Moebius strip)",
     "flat": "flat",
     "small": "too small for this face count",
@@ -79,8 +78,6 @@ def reason(reason: dict[str, Any]) -> str:
     if kind == "handles":
         through = "a hole" if reason["genus"] == 1 else f"{reason['genus']:,} holes"
         return f"has {through} through it like a ring or cup handle"
-    if kind == "shared-edges":
-        return f"3 or more faces meet at {count(reason['n_edges'], 'edge')}"
     return f"could not be done: {reason['text']}"
 
 
@@ -165,7 +162,8 @@ def exceptions(report: dict[str, Any]) -> list[str]:
     """In words what else is otherwise than was asked for."""
     lost = ", ".join(sorted(set(report["lost"])))
     told = [_without_marks(report), f"not carried over: {lost}" if lost else ""]
-    told += [_cleaned(report), _welded(report), _shown(report), *_modifiers(report)]
+    told += [_cleaned(report), _welded(report), _parted(report), _shown(report)]
+    told += _modifiers(report)
     return [each for each in told if each]
 
 
@@ -186,6 +184,13 @@ def _welded(report: dict[str, Any]) -> str:
     """How many vertices of seams were welded."""
     n = report["clean"]["n_seam_welded"]
     return f"{count(n, 'vertex', 'vertices')} of seams welded" if n else ""
+
+
+def _parted(report: dict[str, Any]) -> str:
+    """Where surfaces that share edges came apart."""
+    n, sheets = (report["clean"][name] for name in ("n_shared_edges", "n_sheets"))
+    edges = f"{count(n, 'edge')} at which 3 or more faces meet"
+    return f"taken apart at {edges} into {count(sheets, 'sheet')}" if n else ""
 
 
 def _modifiers(report: dict[str, Any]) -> list[str]:

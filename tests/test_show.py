@@ -98,7 +98,6 @@ def test_all_reasons_are_told_in_the_words_of_artists(
     refuse(
         reason("border", "2 border loops", thing, n_loops=2),
         reason("handles", "genus 1", thing, genus=1),
-        reason("shared-edges", "5 edges", thing, n_edges=5),
         reason("one-sided", "not orientable", thing),
         reason("flat", "no volume", thing),
         reason("failed", "no map was found", thing),
@@ -107,13 +106,12 @@ def test_all_reasons_are_told_in_the_words_of_artists(
     assert [text for text, _ in layout.drawn if text.startswith("DOT ")] == [
         "DOT has 2 holes (open edges)",
         "DOT has a hole through it like a ring or cup handle",
-        "DOT 3 or more faces meet at 5 edges",
         "DOT inside and outside cannot be told apart (like a Moebius strip)",
         "DOT is flat",
         "DOT could not be done: no map was found",
     ]
     shows = [each for each in layout.buttons.values() if each.bl_idname == "object.orbflow_show"]
-    assert [(each.name, each.row) for each in shows] == [(thing.name, i) for i in range(6)]
+    assert [(each.name, each.row) for each in shows] == [(thing.name, i) for i in range(5)]
     exact = addon("operators.show").OBJECT_OT_orbflow_show.description(None, shows[1])
     assert exact.endswith("genus 1")
 
@@ -250,7 +248,6 @@ def test_the_parts_that_stay_are_found_in_the_result(open_fixture: Open) -> None
     [
         ("05", "has 1 hole (open edges)", {1}),
         ("06", "has a hole through it like a ring or cup handle", {2}),
-        ("10", "3 or more faces meet at 1 edge", {3}),
     ],
 )
 def test_the_core_names_the_spot_that_show_selects(
