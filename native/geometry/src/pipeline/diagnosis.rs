@@ -27,7 +27,7 @@ pub fn parts(
         shared: apart.shared.iter().flat_map(SharedLine::edges).collect(),
     };
     let mut surfaces = surfaces(apart, component, n);
-    if surfaces.iter().any(|surface| surface.genus() != 0) {
+    if !can_open && surfaces.iter().any(|surface| surface.genus() != 0) {
         let loops = handle::loops(&apart.mesh);
         for (surface, edges) in surfaces.iter_mut().zip(loops) {
             surface.handle = edges.iter().map(|e| e.map(|v| apart.origin[v])).collect();
@@ -133,7 +133,7 @@ impl Told<'_> {
         };
         let flat = self.flat(surface);
         let genus = surface.genus();
-        let handles = (genus != 0).then(|| {
+        let handles = (genus != 0 && !self.can_open).then(|| {
             let text = format!(
                 "genus {genus}: only meshes without handles (genus 0) can be done; close the \
                  handles first"

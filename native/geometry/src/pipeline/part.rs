@@ -92,7 +92,7 @@ impl PartJob<'_> {
         let Self { part, wanted } = self;
         let n_asked = wanted.n_faces;
         let (n_input_faces, area) = (part.n_faces(), measure::total_area(&part));
-        let closing = Closing::new(&part, wanted.settings, progress)?;
+        let closing = Closing::new(&part, (wanted.settings, n_asked), progress)?;
         let (part, wanted) = match &closing {
             Some(closing) => (closing.mesh().clone(), wanted.of_closed(&part, closing)),
             None => (part, wanted),

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::measure::{FeatureLine, angle_between};
+use crate::measure::{FeatureLine, Polyline, angle_between};
 use crate::mesh::{HalfedgeMap, TriangleMesh, VertexId};
 
 /// A border has a corner where it turns by more than this from one half of an edge of a quad to the
@@ -28,6 +28,19 @@ impl Loops {
             left.map(|edges| edges.iter().map(|&h| open.origin(h)).collect())
                 .collect(),
         )
+    }
+
+    /// How long they are.
+    pub fn lengths(&self, mesh: &TriangleMesh) -> Vec<f64> {
+        self.closed_lines(mesh).map(|line| line.length()).collect()
+    }
+
+    /// They as closed lines, the faces on the left.
+    pub fn closed_lines(&self, mesh: &TriangleMesh) -> impl Iterator<Item = Polyline> {
+        let points = |border: &Vec<VertexId>| border.iter().map(|&v| mesh.position(v)).collect();
+        self.0
+            .iter()
+            .map(move |border| Polyline::new(points(border), true))
     }
 
     /// Where they have corners for quads of some edge length.

@@ -7,26 +7,32 @@
 //! The map is made of the part reduced while it is open, which keeps borders, and closed then.
 
 mod loops;
+mod puncture;
 mod reopen;
+mod weld;
+
+use std::f64::consts::TAU;
 
 use glam::DVec3;
 
 use super::even::Marked;
 use super::part::embed_mesh;
 use super::{Error, Settings};
+use crate::close::handles;
 use crate::close::{self, Closed};
 use crate::decimate;
 use crate::deform::{Held, Target};
 use crate::embed::Solver;
 use crate::flow::FirmEdges;
 use crate::groups::Groups;
-use crate::measure::{FeatureLine, total_area};
+use crate::measure::{FeatureLine, Polyline, Topology, topology_of_triangles, total_area};
 use crate::mesh::{FaceMap, HalfedgeId, HalfedgeMap, Id, TriangleMesh, VertexId, VertexMap};
 use crate::mirror::{Doubled, double_sheet};
 use crate::progress::{Cancelled, Progress};
 use crate::sphere::Adaptive;
 use crate::sphere_map::SphereMap;
 use loops::Loops;
+use puncture::Puncture;
 
 /// Places nearer to each other than this share of the diagonal are one.
 const SAME: f64 = 1e-5;
@@ -35,10 +41,15 @@ const BEND: f64 = 0.5;
 
 /// A part that was closed.
 pub struct Closing {
-    /// The part, open.
+    /// The part, open and without handles.
     open: TriangleMesh,
     closed: Closed,
-    settings: close::Settings,
+    /// Where handles were cut.
+    cuts: Vec<Polyline>,
+    /// The borders that are made once there are quads, for they are shorter than a few of them.
+    punctures: Vec<Puncture>,
+    /// The shape that is to come out.
+    wanted: Topology,
 }
 
 /// A part reduced to the size of the map and closed.
@@ -52,24 +63,64 @@ pub struct Small {
 }
 
 impl Closing {
-    /// Closes a part; none if it is closed and without handles.
+    /// Cuts the handles of a part that is to get so many faces, and closes its borders; none if it
+    /// has neither.
     ///
     /// # Errors
     /// A part that cannot be closed; when cancelled.
     pub fn new(
         part: &TriangleMesh,
-        settings: &Settings,
+        (settings, n_faces): (&Settings, usize),
         progress: &Progress<'_>,
     ) -> Result<Option<Self>, Error> {
-        if part.is_closed() {
+        let mut wanted = topology_of_triangles(part);
+        if wanted.closed && wanted.genus == Some(0) {
             return Ok(None);
         }
-        let settings = settings.close();
-        let closed = close::close(part, &settings, progress)?;
+        let cut = handles::cut(part, progress)?;
+        let loops = Loops::new(
+            &cut.mesh,
+            &HalfedgeMap::filled(3 * cut.mesh.n_faces(), true),
+        );
+        let area = total_area(part);
+        let edge = (area / n_faces.max(1) as f64).sqrt();
+        let twins = cut.twins.iter().map(|[one, _]| length(&cut.mesh, one));
+        let shortest_cut = twins.fold(f64::INFINITY, f64::min);
+        let asked = settings.close().fill;
+        let fill = Filled {
+            asked: match asked {
+                close::Fill::None => 0.0,
+                close::Fill::UpTo(longest) => longest,
+                close::Fill::All => f64::INFINITY,
+            },
+            puncture: (puncture::LONGEST * edge).min((puncture::LARGEST * area * TAU * 2.0).sqrt()),
+            below: shortest_cut * (1.0 - SAME),
+        };
+        let lengths = loops.lengths(&cut.mesh);
+        let n_filled = lengths
+            .iter()
+            .filter(|&&length| length <= fill.asked())
+            .count();
+        wanted.n_borders -= n_filled.min(wanted.n_borders);
+        wanted.closed = wanted.n_borders == 0;
+        let is_puncture = |length: &f64| *length > fill.asked() && *length <= fill.all();
+        let punctures = loops.closed_lines(&cut.mesh).zip(&lengths);
+        let punctures = punctures.filter(|(_, length)| is_puncture(length));
+        let punctures = punctures
+            .map(|(line, _)| Puncture::new(line, edge))
+            .collect();
+        let settings = close::Settings {
+            fill: close::Fill::UpTo(fill.all()),
+            ..close::Settings::default()
+        };
+        let closed = close::close(&cut.mesh, &settings, progress)?;
+        let cuts = cut.twins.iter().map(|[one, _]| polyline(&cut.mesh, one));
         Ok(Some(Self {
-            open: part.clone(),
             closed,
-            settings,
+            cuts: cuts.collect(),
+            punctures,
+            wanted,
+            open: cut.mesh,
         }))
     }
 
@@ -96,16 +147,7 @@ impl Closing {
         }
         let settings = decimate::Settings { n_faces };
         let simplified = decimate::simplify(&self.open, &settings, progress)?;
-        // Both have to be closed the same way.
-        let way = match self.closed.n_doubled {
-            0 => close::Way::Cap,
-            _ => close::Way::Double,
-        };
-        let settings = close::Settings {
-            way,
-            ..self.settings.clone()
-        };
-        let closed = close::close(&simplified.mesh, &settings, progress)?;
+        let closed = close::close(&simplified.mesh, &self.alike(&simplified.mesh), progress)?;
         let border = closed.border();
         Ok(Small {
             loops: Loops::new(&simplified.mesh, &border),
@@ -113,6 +155,23 @@ impl Closing {
             mesh: closed.mesh,
             report: Some(simplified.report),
         })
+    }
+
+    /// How a coarser version is closed the same way: the shortest loops are filled, as many.
+    fn alike(&self, coarse: &TriangleMesh) -> close::Settings {
+        let all = HalfedgeMap::filled(3 * coarse.n_faces(), true);
+        let mut lengths = Loops::new(coarse, &all).lengths(coarse);
+        lengths.sort_by(f64::total_cmp);
+        let fill = match self.closed.n_filled {
+            0 => close::Fill::None,
+            n if n >= lengths.len() => close::Fill::All,
+            n => close::Fill::UpTo(f64::midpoint(lengths[n - 1], lengths[n])),
+        };
+        let way = match self.closed.n_doubled {
+            0 => close::Way::Cap,
+            _ => close::Way::Double,
+        };
+        close::Settings { fill, way }
     }
 
     /// The edges of the closed part between real and virtual faces, on both sides of each.
@@ -156,6 +215,9 @@ impl Closing {
             small: small.border.clone(),
             edges,
             folds,
+            cuts: self.cuts,
+            punctures: self.punctures,
+            wanted: self.wanted,
             is_real,
             bare: Target::new(bare, progress)?,
         })
@@ -171,6 +233,11 @@ pub struct Opening {
     pub edges: Marked,
     /// Where a sheet is glued to its other side; empty where there is no other side.
     folds: Marked,
+    /// Where handles were cut.
+    cuts: Vec<Polyline>,
+    punctures: Vec<Puncture>,
+    /// The shape that is to come out.
+    wanted: Topology,
     /// Where their corners are on the map's mesh, and where they belong.
     ends: Vec<(DVec3, DVec3)>,
     /// Which faces of the target are real.
@@ -239,7 +306,37 @@ impl Opening {
             let mut ends = self.ends.iter();
             is_corner[v] = ends.any(|(_, corner)| corner.distance_squared(p) < SAME * SAME);
         }
-        FirmEdges { is_on, is_corner }
+        FirmEdges {
+            twins: self.twins(mesh, &is_on),
+            is_on,
+            is_corner,
+        }
+    }
+
+    /// The two loops of edges along each cut, where there are two.
+    fn twins(&self, mesh: &TriangleMesh, is_on: &HalfedgeMap<bool>) -> Vec<[Vec<HalfedgeId>; 2]> {
+        if self.cuts.is_empty() {
+            return Vec::new();
+        }
+        let mut groups = Groups::new(mesh.n_vertices());
+        let on = || mesh.halfedge_ids().filter(|&h| is_on[h]);
+        for h in on() {
+            groups.link(mesh.origin(h).index(), mesh.target(h).index());
+        }
+        let (group, n_groups) = groups.numbered();
+        let mut loops = vec![Vec::new(); n_groups];
+        for h in on() {
+            loops[group[mesh.origin(h).index()] as usize].push(h);
+        }
+        let along = |cut: &Polyline| {
+            let lies = |edges: &&Vec<HalfedgeId>| {
+                let mut places = edges.iter().map(|&h| mesh.position(mesh.origin(h)));
+                !edges.is_empty() && places.all(|p| cut.distance(p) < SAME)
+            };
+            loops.iter().filter(lies).cloned().collect::<Vec<_>>()
+        };
+        let twins = self.cuts.iter().map(along);
+        twins.filter_map(|two| two.try_into().ok()).collect()
     }
 
     /// Holds the edges of a primitive that were made along borders, on the target's: corners of the
@@ -282,6 +379,34 @@ impl Opening {
             edges,
         })
     }
+}
+
+/// Up to which length borders are closed before quads are made.
+struct Filled {
+    /// Those that stay closed.
+    asked: f64,
+    /// Those that are opened again.
+    puncture: f64,
+    /// But none as long as this: those of cuts are needed.
+    below: f64,
+}
+
+impl Filled {
+    fn asked(&self) -> f64 {
+        self.asked.min(self.below)
+    }
+
+    fn all(&self) -> f64 {
+        self.asked.max(self.puncture).min(self.below)
+    }
+}
+
+fn polyline(mesh: &TriangleMesh, vertices: &[VertexId]) -> Polyline {
+    Polyline::new(vertices.iter().map(|&v| mesh.position(v)).collect(), true)
+}
+
+fn length(mesh: &TriangleMesh, vertices: &[VertexId]) -> f64 {
+    polyline(mesh, vertices).length()
 }
 
 /// The borders of a closed part across which it was doubled, on both sides of each edge: there most

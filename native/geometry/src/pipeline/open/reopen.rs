@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::Opening;
 use crate::deform::{Deformed, Target};
 use crate::groups::Groups;
-use crate::measure::{PolygonEdges, area_vector, topology, topology_of_triangles};
+use crate::measure::{PolygonEdges, area_vector, topology};
 use crate::mesh::{PolygonMesh, VertexId};
 use crate::progress::{Cancelled, Progress};
 
@@ -35,8 +35,16 @@ impl Opening {
         let is_kept: Vec<bool> = patches.iter().map(|&p| votes[p as usize] > 0.0).collect();
         let opened = deformed.only(&is_kept, progress)?;
         let opened = self.onto_borders(opened, progress)?;
+        let opened = match self.punctured(opened, progress)? {
+            Ok(opened) => self.welded(opened, progress)?,
+            refused => refused,
+        };
+        let opened = match opened {
+            Ok(opened) => opened,
+            refused => return Ok(refused),
+        };
         let found = topology(&opened.mesh, progress)?;
-        let wanted = topology_of_triangles(self.bare.mesh());
+        let wanted = self.wanted;
         let figures = [
             ("pieces", found.n_components, wanted.n_components),
             ("borders", found.n_borders, wanted.n_borders),
