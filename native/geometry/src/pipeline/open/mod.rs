@@ -192,7 +192,11 @@ impl Closing {
         let on_border = self.closed.border();
         let edges = Marked::new(&self.closed.mesh, &on_border);
         let edge = (total_area(&self.closed.mesh) / n_faces.max(1) as f64).sqrt();
-        let corners = Loops::new(&self.open, &on_border).corners(&self.closed.mesh, edge);
+        // Where a handle was cut the surface goes on.
+        let is_cut = |p: DVec3| self.cuts.iter().any(|cut| cut.distance(p) < SAME);
+        let loops = Loops::new(&self.open, &on_border);
+        let mut corners = loops.corners(&self.closed.mesh, edge);
+        corners.retain(|&corner| !is_cut(corner));
         let between = small.loops.lines(&small.mesh, (&corners, edge));
         let place = |v: VertexId| small.mesh.position(v);
         let ends = between.iter().flat_map(|line| {
