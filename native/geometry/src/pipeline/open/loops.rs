@@ -37,10 +37,9 @@ impl Loops {
 
     /// They as closed lines, the faces on the left.
     pub fn closed_lines(&self, mesh: &TriangleMesh) -> impl Iterator<Item = Polyline> {
-        let points = |border: &Vec<VertexId>| border.iter().map(|&v| mesh.position(v)).collect();
         self.0
             .iter()
-            .map(move |border| Polyline::new(points(border), true))
+            .map(move |border| super::polyline(mesh, border))
     }
 
     /// Where they have corners for quads of some edge length.

@@ -405,8 +405,10 @@ impl Filled {
     }
 }
 
+/// A closed line through vertices.
 fn polyline(mesh: &TriangleMesh, vertices: &[VertexId]) -> Polyline {
-    Polyline::new(vertices.iter().map(|&v| mesh.position(v)).collect(), true)
+    let round = vertices.iter().chain(vertices.first());
+    Polyline::new(round.map(|&v| mesh.position(v)).collect(), true)
 }
 
 fn length(mesh: &TriangleMesh, vertices: &[VertexId]) -> f64 {
