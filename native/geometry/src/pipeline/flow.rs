@@ -345,7 +345,7 @@ impl Ground<'_> {
             is_on_lines: self.keeps_lines(),
             forces_lines: self.asked.opening.is_some(),
             // What is virtual may lie on what is real.
-            separates: self.asked.opening.is_none_or(|opening| !opening.is_sheet()),
+            separates: self.asked.opening.is_none_or(|opening| !opening.overlaps()),
             ..deform::Settings::default()
         };
         let fit = || deform::deform_flow(&self.even, flowing, self.target, &settings, &part);

@@ -412,7 +412,7 @@ impl Ground<'_> {
     /// How faces are laid on it that do not flow.
     pub fn deform(&self) -> deform::Settings {
         deform::Settings {
-            separates: self.opening.is_none_or(|opening| !opening.is_sheet()),
+            separates: self.opening.is_none_or(|opening| !opening.overlaps()),
             ..deform::Settings::default()
         }
     }

@@ -251,6 +251,12 @@ pub struct Opening {
 }
 
 impl Opening {
+    /// Whether what is virtual may lie on what is real or on itself: the other side of a sheet, the caps
+    /// of a cut.
+    pub fn overlaps(&self) -> bool {
+        self.is_sheet() || !self.cuts.is_empty()
+    }
+
     /// Whether a side lies on another.
     pub fn is_sheet(&self) -> bool {
         !self.folds.is_empty()
