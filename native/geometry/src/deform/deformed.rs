@@ -97,12 +97,19 @@ impl Deformed {
     }
 
     /// The same with some vertices joined: another mesh of the same faces, and what became of each
-    /// vertex. What is inverted is counted anew.
+    /// vertex. What is inverted or crosses is counted anew.
+    ///
+    /// # Errors
+    /// When cancelled.
     ///
     /// # Panics
     /// When the mesh does not have these vertices.
-    #[must_use]
-    pub fn renamed(self, mesh: PolygonMesh, names: &VertexMap<VertexId>) -> Self {
+    pub fn renamed(
+        self,
+        mesh: PolygonMesh,
+        names: &VertexMap<VertexId>,
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
         let mut sphere = vec![DVec3::ZERO; mesh.n_vertices()];
         for (&point, &name) in self.sphere.iter().zip(names).rev() {
             sphere[name.index()] = point;
@@ -114,16 +121,17 @@ impl Deformed {
             edges.dedup();
             edges
         };
-        Self {
+        Ok(Self {
             sphere,
             features: edges(self.features),
             led: edges(self.led),
             report: Report {
+                n_crossing_left: separate::n_crossing(&mesh, progress)?,
                 n_inverted: untangle::n_inverted(&mesh),
                 ..self.report
             },
             mesh,
-        }
+        })
     }
 
     /// What a sheet has become.

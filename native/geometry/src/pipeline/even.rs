@@ -114,6 +114,9 @@ pub struct Even {
     pub sphere: sphere::Report,
 }
 
+/// So many more triangles per area are made inside caps, which are small and hold singularities.
+const IN_CAPS: f64 = 4.0;
+
 /// What an even surface is for.
 pub struct For<'a> {
     pub n_quads: usize,
@@ -167,7 +170,12 @@ pub fn even(
         seed,
         ..sphere::Settings::default()
     };
-    let density = density(map.mesh(), quads, &progress.part("", 0.0, 0.1))?;
+    let mut density = density(map.mesh(), quads, &progress.part("", 0.0, 0.1))?;
+    if let Some(opening) = quads.opening {
+        for (wanted, &is_in_cap) in density.as_mut_slice().iter_mut().zip(&opening.is_in_cap) {
+            *wanted *= if is_in_cap { IN_CAPS } else { 1.0 };
+        }
+    }
     let is_finer = density.iter().any(|&wanted| wanted > 1.0);
     let part = progress.part("", 0.1, 0.7);
     let made = sphere::sized(map, (&density, quads.lines), &settings, &part)?;

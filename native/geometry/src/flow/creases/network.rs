@@ -216,9 +216,14 @@ impl<'a> Network<'a> {
             let before = places.len();
             places.extend(inside(patch).filter(there));
             if places.len() == before {
-                let is_free = |v: &VertexId| field.indices[*v] == 0 && !self.is_in_plane(*v);
-                let free = inside(patch).filter(is_free);
-                places.extend(free.max_by(|a, b| deep[*a].total_cmp(&deep[*b])));
+                // Two at one vertex are better than none in a patch of few.
+                let deepest = |index: i32| {
+                    let is_free =
+                        |v: &VertexId| field.indices[*v] * -sign == index && !self.is_in_plane(*v);
+                    let free = inside(patch).filter(is_free);
+                    free.max_by(|a, b| deep[*a].total_cmp(&deep[*b]))
+                };
+                places.extend(deepest(0).or_else(|| deepest(1)));
             }
         }
         places

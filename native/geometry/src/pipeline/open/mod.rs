@@ -59,6 +59,8 @@ pub struct Small {
     pub border: HalfedgeMap<bool>,
     /// The same as loops.
     loops: Loops,
+    /// Which of its vertices are inside caps.
+    is_in_cap: VertexMap<bool>,
     pub report: Option<decimate::Report>,
 }
 
@@ -141,6 +143,7 @@ impl Closing {
             return Ok(Small {
                 mesh: self.closed.mesh.clone(),
                 loops: Loops::new(&self.open, &border),
+                is_in_cap: in_caps(&self.open, &self.closed),
                 border,
                 report: None,
             });
@@ -151,6 +154,7 @@ impl Closing {
         let border = closed.border();
         Ok(Small {
             loops: Loops::new(&simplified.mesh, &border),
+            is_in_cap: in_caps(&simplified.mesh, &closed),
             border,
             mesh: closed.mesh,
             report: Some(simplified.report),
@@ -217,6 +221,7 @@ impl Closing {
             lines: between.into_iter().map(|line| line.line).collect(),
             ends,
             small: small.border.clone(),
+            is_in_cap: small.is_in_cap.clone(),
             edges,
             folds,
             cuts: self.cuts,
@@ -232,6 +237,8 @@ impl Closing {
 pub struct Opening {
     /// The borders on the map's mesh, as its edges and as lines.
     pub small: HalfedgeMap<bool>,
+    /// Which vertices of the map's mesh are inside caps, where singularities need room.
+    pub is_in_cap: VertexMap<bool>,
     pub lines: Vec<FeatureLine>,
     /// Where they lie on the target.
     pub edges: Marked,
@@ -389,6 +396,12 @@ impl Opening {
             edges,
         })
     }
+}
+
+/// Which vertices of a closed mesh came with caps; none where a side lies on another.
+fn in_caps(open: &TriangleMesh, closed: &Closed) -> VertexMap<bool> {
+    let is_new = |v: VertexId| closed.n_doubled == 0 && v.index() >= open.n_vertices();
+    closed.mesh.vertex_ids().map(is_new).collect()
 }
 
 /// Up to which length borders are closed before quads are made.

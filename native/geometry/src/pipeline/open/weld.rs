@@ -30,7 +30,7 @@ impl Opening {
             return Ok(Err("a cut has not two borders of quads".to_owned()));
         };
         Ok(match handles::weld(&opened.mesh, &twins) {
-            Ok(welded) => Ok(opened.renamed(welded.mesh, &welded.vertices)),
+            Ok(welded) => Ok(opened.renamed(welded.mesh, &welded.vertices, progress)?),
             Err(error) => Err(error.to_string()),
         })
     }
