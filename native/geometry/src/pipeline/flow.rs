@@ -307,6 +307,8 @@ impl Ground<'_> {
     fn kept_back(&self, best: &Result<FlowedPart, String>, budget: &Budget) -> usize {
         match best {
             Ok(best) => usize::from(self.doubled.is_some() && best.n_missed > 0),
+            // Strips are not taken out of quads with borders.
+            Err(_) if self.asked.opening.is_some() => usize::from(self.doubled.is_some()),
             Err(_) => budget.kept_back(self.doubled.is_some()),
         }
     }
