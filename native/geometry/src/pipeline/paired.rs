@@ -12,7 +12,7 @@ use super::part::{Ground, Wanted, embed_mesh};
 use super::probe::Halves;
 use crate::deform::{self, Deformed, Held, Target};
 use crate::mesh::VertexMap;
-use crate::pair::{self, Paired};
+use crate::pair::{self, Paired, Stay};
 use crate::pipeline;
 use crate::progress::{Cancelled, Progress};
 use crate::sphere::{self, Adaptive};
@@ -181,10 +181,14 @@ fn quarters(
         })?;
         let mesh = triangles(&even.mesh);
         let kept = either_side(&mesh, &even.features);
+        let firm = ground.opening.map(|_| either_side(&mesh, &held.edges));
         let map = SphereMap::prove(mesh, VertexMap::from_vec(even.sphere));
         let map = map.map_err(embed::Error::from)?;
         let part = progress.part("pair", 0.8, 1.0);
-        let paired = clock.step("pair", || pair::pair(&map, &kept, &part))?;
+        let paired = clock.step("pair", || {
+            let (kept, firm) = (&kept, firm.as_ref());
+            pair::pair(&map, Stay { kept, firm }, &part)
+        })?;
         Ok(Pairs {
             map,
             paired,
@@ -218,7 +222,10 @@ fn own(
         let part = progress.part("embed", 0.3, 0.8);
         let embedded = clock.step("embed", || embed_mesh(mesh, wanted.predictor, &part))?;
         let part = progress.part("pair", 0.8, 1.0);
-        let paired = clock.step("pair", || pair::pair(&embedded.map, &kept, &part))?;
+        let paired = clock.step("pair", || {
+            let (kept, firm) = (&kept, None);
+            pair::pair(&embedded.map, Stay { kept, firm }, &part)
+        })?;
         Ok(Pairs {
             map: embedded.map,
             paired,
