@@ -33,9 +33,18 @@ pub struct Guides<'a> {
     /// Those of them that somebody marked: they stay lines where sharp edges are not clear.
     pub marked: &'a HalfedgeMap<bool>,
     /// Those of them that have to be met, such as borders: closed lines, or ones that end in others.
-    pub firm: Option<&'a HalfedgeMap<bool>>,
+    pub firm: Option<&'a FirmEdges>,
     /// That the surface is its own image in a plane, and the quads shall be.
     pub mirror: Option<&'a Doubled>,
+}
+
+/// Edges along which quads have to lie.
+#[derive(Clone, PartialEq, Debug)]
+pub struct FirmEdges {
+    /// They, on both sides of each.
+    pub is_on: HalfedgeMap<bool>,
+    /// Where two of them make a corner of quads.
+    pub is_corner: VertexMap<bool>,
 }
 
 /// Quads that flow, not yet laid on the surface.
@@ -268,7 +277,9 @@ fn search(
 /// How many lines of a plan have to be met and are not.
 fn unmet(plan: &Plan, laid: &Laid) -> usize {
     let lines = plan.lines().zip(&laid.is_met);
-    lines.filter(|(line, is_met)| line.is_firm && !**is_met).count()
+    lines
+        .filter(|(line, is_met)| line.is_firm && !**is_met)
+        .count()
 }
 
 /// The grid of whole periods, with the ends of lines among its vertices.

@@ -11,7 +11,7 @@ use super::flow::Asked;
 use super::flowed::{Flowed, FlowedPart};
 use super::marks::Marks;
 use super::mirror::{self, Faced, Plane, Role, face};
-use super::open::{Closing, Opening};
+use super::open::{Closing, Opening, Small};
 use super::paired::{Instead, Laid, paired};
 use super::report::{Mirrored, PartReport, Reduced};
 use super::settings::{Kind, Primitive, Settings};
@@ -84,8 +84,8 @@ pub struct Ground<'a> {
 
 struct Reduction {
     mesh: TriangleMesh,
-    /// Its borders, where it was closed.
-    border: Option<HalfedgeMap<bool>>,
+    /// The same with its borders, where it was closed.
+    small: Option<Small>,
     reduced: Option<Reduced>,
     report: Option<decimate::Report>,
 }
@@ -107,7 +107,10 @@ impl PartJob<'_> {
             density,
             axis,
             refused,
-        } = face((part, marked, density), (&wanted.role(closing.as_ref()), wanted.mirror.1));
+        } = face(
+            (part, marked, density),
+            (&wanted.role(closing.as_ref()), wanted.mirror.1),
+        );
         let stage = progress.part("decimate", 0.0, 0.2);
         let reduction = clock.step("decimate", || match &closing {
             Some(closing) => wanted.reduce_open(closing, &stage),
@@ -123,9 +126,9 @@ impl PartJob<'_> {
         let border = closing.as_ref().map(Closing::border);
         let lines = (&marked, border.as_ref());
         let target = clock.step("deform", || wanted.target((part, lines), progress))?;
-        let opening = match (closing, reduction.border) {
-            (Some(closing), Some(border)) => {
-                Some(closing.opening((&embedded.map, border), progress)?)
+        let opening = match (closing, reduction.small) {
+            (Some(closing), Some(small)) => {
+                Some(closing.opening(&small, wanted.n_faces, progress)?)
             }
             _ => None,
         };
@@ -223,10 +226,10 @@ impl Wanted<'_> {
         let small = closing.reduced(self.n_map_faces(), progress)?;
         let reason = "the part is open, and has to be closed first".to_owned();
         Ok(Reduction {
-            mesh: small.mesh,
-            border: Some(small.border),
+            mesh: small.mesh.clone(),
             reduced: self.reduced.map(|_| Reduced::Refused { reason }),
-            report: small.report,
+            report: small.report.clone(),
+            small: Some(small),
         })
     }
 
@@ -328,7 +331,7 @@ impl Wanted<'_> {
         if start.n_faces() <= n_faces {
             return Ok(Reduction {
                 mesh: start.into_owned(),
-                border: None,
+                small: None,
                 reduced,
                 report: None,
             });
@@ -337,7 +340,7 @@ impl Wanted<'_> {
         let simplified = decimate::simplify(&start, &settings, progress)?;
         Ok(Reduction {
             mesh: simplified.mesh,
-            border: None,
+            small: None,
             reduced,
             report: Some(simplified.report),
         })

@@ -51,7 +51,11 @@ impl Parts {
         progress: &Progress<'_>,
     ) -> Result<(Self, Cleaned), Error> {
         let (component, n) = apart.mesh.face_components();
-        let mut parts = diagnosis::parts((input.mesh, settings, settings.can_open()), &apart, (&component, n));
+        let mut parts = diagnosis::parts(
+            (input.mesh, settings, settings.can_open()),
+            &apart,
+            (&component, n),
+        );
         progress.check()?;
         if parts.len() > 1 {
             let amounts = amounts(input, &apart.mesh, progress)?;

@@ -6,6 +6,7 @@
 //!
 //! The map is made of the part reduced while it is open, which keeps borders, and closed then.
 
+mod loops;
 mod reopen;
 
 use glam::DVec3;
@@ -16,15 +17,16 @@ use super::{Error, Settings};
 use crate::close::{self, Closed};
 use crate::decimate;
 use crate::deform::{Held, Target};
-use crate::measure::{FeatureLine, feature_lines};
 use crate::embed::Solver;
+use crate::flow::FirmEdges;
 use crate::groups::Groups;
-use crate::mesh::{FaceMap, HalfedgeId, HalfedgeMap, Id, TriangleMesh, VertexId};
+use crate::measure::{FeatureLine, total_area};
+use crate::mesh::{FaceMap, HalfedgeId, HalfedgeMap, Id, TriangleMesh, VertexId, VertexMap};
 use crate::mirror::{Doubled, double_sheet};
-use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
 use crate::sphere::Adaptive;
 use crate::sphere_map::SphereMap;
+use loops::Loops;
 
 /// Places nearer to each other than this share of the diagonal are one.
 const SAME: f64 = 1e-5;
@@ -44,6 +46,8 @@ pub struct Small {
     pub mesh: TriangleMesh,
     /// Its edges between real and virtual faces, on both sides of each.
     pub border: HalfedgeMap<bool>,
+    /// The same as loops.
+    loops: Loops,
     pub report: Option<decimate::Report>,
 }
 
@@ -82,9 +86,11 @@ impl Closing {
         let share = self.closed.mesh.n_faces() as f64 / self.open.n_faces() as f64;
         let n_faces = (n_faces as f64 / share) as usize;
         if self.open.n_faces() <= n_faces {
+            let border = self.closed.border();
             return Ok(Small {
                 mesh: self.closed.mesh.clone(),
-                border: self.closed.border(),
+                loops: Loops::new(&self.open, &border),
+                border,
                 report: None,
             });
         }
@@ -100,8 +106,10 @@ impl Closing {
             ..self.settings.clone()
         };
         let closed = close::close(&simplified.mesh, &settings, progress)?;
+        let border = closed.border();
         Ok(Small {
-            border: closed.border(),
+            loops: Loops::new(&simplified.mesh, &border),
+            border,
             mesh: closed.mesh,
             report: Some(simplified.report),
         })
@@ -118,12 +126,23 @@ impl Closing {
     /// When cancelled.
     pub fn opening(
         self,
-        (map, border): (&SphereMap, HalfedgeMap<bool>),
+        small: &Small,
+        n_faces: usize,
         progress: &Progress<'_>,
     ) -> Result<Opening, Cancelled> {
         let on_border = self.closed.border();
         let edges = Marked::new(&self.closed.mesh, &on_border);
-        let lines = feature_lines(&self.closed.mesh, &on_border);
+        let edge = (total_area(&self.closed.mesh) / n_faces.max(1) as f64).sqrt();
+        let corners = Loops::new(&self.open, &on_border).corners(&self.closed.mesh, edge);
+        let between = small.loops.lines(&small.mesh, (&corners, edge));
+        let place = |v: VertexId| small.mesh.position(v);
+        let ends = between.iter().flat_map(|line| {
+            let own = &line.line.vertices;
+            let own = [own[0], own[own.len() - 1]].map(place);
+            line.ends
+                .map(|corners| [(own[0], corners[0]), (own[1], corners[1])])
+        });
+        let ends: Vec<(DVec3, DVec3)> = ends.flatten().collect();
         let folds = Marked::new(&self.closed.mesh, &folds(&self.closed));
         let is_real = self.closed.is_real;
         let faces = self.closed.mesh.face_ids();
@@ -132,9 +151,9 @@ impl Closing {
         let real = TriangleMesh::of_faces(self.closed.mesh.positions(), real);
         let (bare, _) = real.expect("the real faces of a closed part are a mesh");
         Ok(Opening {
-            corners: corners(&self.closed.mesh, &lines),
-            lines: feature_lines(map.mesh(), &border),
-            small: border,
+            lines: between.into_iter().map(|line| line.line).collect(),
+            ends,
+            small: small.border.clone(),
             edges,
             folds,
             is_real,
@@ -152,8 +171,8 @@ pub struct Opening {
     pub edges: Marked,
     /// Where a sheet is glued to its other side; empty where there is no other side.
     folds: Marked,
-    /// Their corners there.
-    corners: Vec<DVec3>,
+    /// Where their corners are on the map's mesh, and where they belong.
+    ends: Vec<(DVec3, DVec3)>,
     /// Which faces of the target are real.
     is_real: FaceMap<bool>,
     /// The real part of the target alone.
@@ -188,7 +207,9 @@ impl Opening {
         }
         let (side, n_sides) = groups.numbered();
         if n_sides != 2 {
-            return Ok(Err(format!("the even surface has {n_sides} sides, not two")));
+            return Ok(Err(format!(
+                "the even surface has {n_sides} sides, not two"
+            )));
         }
         let mut votes = [0.0; 2];
         for face in mesh.face_ids() {
@@ -209,6 +230,18 @@ impl Opening {
         Ok(Ok((embedded.map, doubled)))
     }
 
+    /// Some edges of a surface that was made along the borders, with the borders' corners.
+    pub fn firm(&self, mesh: &TriangleMesh, is_on: HalfedgeMap<bool>) -> FirmEdges {
+        let mut is_corner = VertexMap::filled(mesh.n_vertices(), false);
+        for h in mesh.halfedge_ids().filter(|&h| is_on[h]) {
+            let v = mesh.origin(h);
+            let p = mesh.position(v);
+            let mut ends = self.ends.iter();
+            is_corner[v] = ends.any(|(_, corner)| corner.distance_squared(p) < SAME * SAME);
+        }
+        FirmEdges { is_on, is_corner }
+    }
+
     /// Holds the edges of a primitive that were made along borders, on the target's: corners of the
     /// map's mesh on its corners.
     ///
@@ -225,8 +258,6 @@ impl Opening {
             return Err(Error::Unopened { reason });
         }
         let border = self.edges.tree(progress)?;
-        let corners = (!self.corners.is_empty()).then(|| Bvh::of_points(&self.corners));
-        let ends: Vec<DVec3> = self::corners(map.mesh(), &self.lines);
         let own = Marked::new(map.mesh(), &self.small).tree(progress)?;
         let at = |v: VertexId| map.surface_position(map.locate(made.primitive.position(v)));
         // Of a solid's lines not all are borders.
@@ -242,11 +273,9 @@ impl Opening {
         vertices.dedup();
         let place = |v: VertexId| {
             let p = at(v);
-            let is_end = ends.iter().any(|end| end.distance_squared(p) < SAME * SAME);
-            match &corners {
-                Some(corners) if is_end => corners.closest(p).position,
-                _ => border.closest(p).position,
-            }
+            let mut ends = self.ends.iter();
+            let end = ends.find(|(own, _)| own.distance_squared(p) < SAME * SAME);
+            end.map_or_else(|| border.closest(p).position, |(_, corner)| *corner)
         };
         Ok(Held {
             goals: vertices.into_iter().map(|v| (v, place(v))).collect(),
@@ -273,11 +302,4 @@ fn folds(closed: &Closed) -> HalfedgeMap<bool> {
     }
     let is_fold = |h| border[h] && votes[of(h)] > 0;
     mesh.halfedge_ids().map(is_fold).collect()
-}
-
-/// Where lines that do not go round begin and end.
-fn corners(mesh: &TriangleMesh, lines: &[FeatureLine]) -> Vec<DVec3> {
-    let open = lines.iter().filter(|line| !line.is_closed());
-    let ends = open.flat_map(|line| [line.vertices[0], line.vertices[line.vertices.len() - 1]]);
-    ends.map(|v| mesh.position(v)).collect()
 }
