@@ -40,6 +40,13 @@ pub struct Paired {
     pub firm: Vec<[VertexId; 2]>,
 }
 
+impl Paired {
+    /// How many quads there are once all are split.
+    pub fn n_once_split(&self) -> usize {
+        self.quads.faces().map(<[VertexId]>::len).sum()
+    }
+}
+
 /// Edges that are to be edges of quads, on both sides of each.
 #[derive(Clone, Copy, Debug)]
 pub struct Stay<'a> {
@@ -100,7 +107,9 @@ pub fn pair(map: &SphereMap, stay: Stay<'_>, progress: &Progress) -> Result<Pair
     let is_held = held(mesh, stay, &alone);
     let vertices = tips::without(&mut quads, &is_held, map.sphere().as_slice());
     let quads = named((&quads, &alone), (&vertices, map));
-    let firm = stay.firm.map(|firm| edges_of((mesh, firm), (&quads, &vertices)));
+    let firm = stay
+        .firm
+        .map(|firm| edges_of((mesh, firm), (&quads, &vertices)));
     Ok(Paired {
         kept: edges_of((mesh, stay.kept), (&quads, &vertices)),
         firm: firm.unwrap_or_default(),

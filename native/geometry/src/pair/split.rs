@@ -34,12 +34,18 @@ pub fn split(paired: &Paired) -> Paired {
         let middle = points.len() as u32;
         let n = face.len();
         let ends = [0, 2].map(|i| quads.position(face[i]));
-        let third = if n == 3 { quads.position(face[1]) } else { DVec3::ZERO };
+        let third = if n == 3 {
+            quads.position(face[1])
+        } else {
+            DVec3::ZERO
+        };
         points.push((ends[0] + ends[1] + third).normalize_or(ends[0]));
         four.extend((0..n).map(|i| [face[i].0, edges[i], middle, edges[(i + n - 1) % n]]));
     }
     let halves = |edges: &[[VertexId; 2]]| {
-        let both = edges.iter().flat_map(|edge| edge.map(|end| [end, VertexId(middles[edge])]));
+        let both = edges
+            .iter()
+            .flat_map(|edge| edge.map(|end| [end, VertexId(middles[edge])]));
         let mut both: Vec<_> = both.collect();
         both.sort_unstable();
         both

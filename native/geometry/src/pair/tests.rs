@@ -71,7 +71,9 @@ fn borders(mesh: &TriangleMesh, seed: u64) -> HalfedgeMap<bool> {
     }
     let side = |h: HalfedgeId| patch[h.face().index()];
     let edges = mesh.halfedge_ids();
-    edges.map(|h| side(h) != side(mesh.twin(h).unwrap())).collect()
+    edges
+        .map(|h| side(h) != side(mesh.twin(h).unwrap()))
+        .collect()
 }
 
 proptest! {
@@ -101,11 +103,19 @@ fn a_straight_firm_edge_keeps_two_quads_on_either_side_of_its_vertices() {
     let map = radial_map(shapes::mapped_cube(8, |p| p));
     let mesh = map.mesh();
     let middle = |h: HalfedgeId| mesh.triangle(h.face()).iter().sum::<DVec3>().x > 0.0;
-    let firm = mesh.halfedge_ids().map(|h| middle(h) != middle(mesh.twin(h).unwrap()));
+    let firm = mesh
+        .halfedge_ids()
+        .map(|h| middle(h) != middle(mesh.twin(h).unwrap()));
     let firm: HalfedgeMap<bool> = firm.collect();
-    let stay = Stay { kept: &none(&map), firm: Some(&firm) };
+    let stay = Stay {
+        kept: &none(&map),
+        firm: Some(&firm),
+    };
     let paired = pair(&map, stay, &Progress::none()).unwrap();
-    assert_eq!((paired.firm.len(), paired.quads.n_quads()), (32, paired.quads.n_faces()));
+    assert_eq!(
+        (paired.firm.len(), paired.quads.n_quads()),
+        (32, paired.quads.n_faces())
+    );
     let n = n_at(&paired.quads);
     assert!(paired.firm.iter().flatten().all(|v| n[v.index()] >= 4));
 }
@@ -136,7 +146,9 @@ fn edges_that_are_to_stay_stay() {
 #[test]
 fn regular_triangles_become_squares() {
     let map = radial_map(shapes::cuboid(8));
-    let pairs = pair(&map, kept(&none(&map)), &Progress::none()).unwrap().quads;
+    let pairs = pair(&map, kept(&none(&map)), &Progress::none())
+        .unwrap()
+        .quads;
     let regular = n_at(&pairs).iter().filter(|&&n| n == 4).count();
     assert!(10 * regular > 9 * pairs.n_vertices(), "{regular}");
 }

@@ -77,7 +77,7 @@ pub struct Ground<'a> {
     /// The axis across the plane of symmetry.
     axis: Option<usize>,
     /// How many faces are wanted on what is real.
-    pub n_asked: usize,
+    n_asked: usize,
     /// What is real of the target, where it was closed.
     pub opening: Option<&'a Opening>,
 }
@@ -443,6 +443,28 @@ impl<'a> Ground<'a> {
             Some(opening) => opening.held_all(map, made, progress),
             None => Ok(Held::default()),
         }
+    }
+
+    /// How many faces are wanted on what is real, of so many on all.
+    pub fn n_asked(&self, wanted: &Wanted<'_>) -> usize {
+        match self.opening {
+            Some(_) => self.n_asked,
+            None => wanted.n_faces,
+        }
+    }
+
+    /// The share of a surface's faces that lie on what is real, between the edges along borders.
+    pub fn real_share(
+        &self,
+        (mesh, border): (&PolygonMesh, &[[VertexId; 2]]),
+        progress: &Progress<'_>,
+    ) -> Result<f64, Cancelled> {
+        let Some(opening) = self.opening else {
+            return Ok(1.0);
+        };
+        let is_real = opening.real((mesh, border), self.target, progress)?;
+        let n_real = is_real.iter().filter(|is_real| **is_real).count();
+        Ok(n_real as f64 / is_real.len().max(1) as f64)
     }
 
     /// A closed part of which nothing is marked.
