@@ -14,7 +14,7 @@ use super::squares::spoke;
 use super::straddle::Fit;
 use super::target::Target;
 use super::untangle::{corners, untangle, worse_than};
-use super::{Deformed, Error, Report, Settings, check_primitive};
+use super::{Deformed, Error, Held, Report, Settings, check_primitive};
 use crate::measure::vertex_normals;
 use crate::mesh::{PolygonMesh, VertexId};
 use crate::progress::{Cancelled, Progress};
@@ -32,7 +32,7 @@ const N_ROUNDS: usize = 20;
 
 /// Lays quads on the target that lie on the map's surface already, as pairs of its triangles do.
 ///
-/// Some edges, each once, lie along the target's sharp ones, and their ends stay where they are. All else
+/// Some edges lie along the target's sharp ones, and their ends stay where they are or are put. All else
 /// goes onto the target, is fitted by least squares and mended where it is bad. Connections and points
 /// of the sphere stay.
 ///
@@ -40,7 +40,7 @@ const N_ROUNDS: usize = 20;
 /// Quads that do not cover the sphere, and [`Cancelled`].
 pub fn lay(
     map: &SphereMap,
-    (quads, features): (&PolygonMesh, &[[VertexId; 2]]),
+    (quads, held): (&PolygonMesh, &Held),
     target: &Target,
     settings: &Settings,
     progress: &Progress,
@@ -48,10 +48,14 @@ pub fn lay(
     check_primitive(quads)?;
     let mut report = Report::default();
     let mut sheet = Sheet::new(map, vertex_normals(map.mesh()), quads);
-    for &[a, b] in features {
+    for &[a, b] in &held.edges {
         sheet.keep_edge(a, b);
         sheet.pin(a);
         sheet.pin(b);
+    }
+    for &(v, place) in &held.goals {
+        sheet.lift(v, place);
+        sheet.pin(v);
     }
     report.n_feature_goals = sheet.vertex_ids().filter(|&v| sheet.is_pinned(v)).count();
     report.n_feature_vertices = report.n_feature_goals;

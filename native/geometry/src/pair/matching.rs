@@ -1,46 +1,47 @@
-//! Perfect matchings of graphs in which every node has three neighbours.
+//! Largest matchings of graphs in which every node has up to three neighbours.
 //!
 //! A greedy matching is completed by augmenting paths through blossoms (Edmonds 1965), so that none
-//! is missed: without bridges, as the faces of closed triangles are joined, a perfect one exists
-//! (Petersen 1891). Then alternating cycles that gain weight are turned over until none of up to
+//! is missed: with three neighbours each and without bridges, as the faces of closed triangles are
+//! joined, a perfect one exists (Petersen 1891). Then alternating cycles that gain weight are turned over until none of up to
 //! [`MOST_NEW`] new pairs is left: no such small change makes the matching better.
 
 use std::collections::VecDeque;
 
 use crate::progress::{Cancelled, Progress};
 
-/// No partner, no parent.
-const NONE: u32 = u32::MAX;
+/// No neighbour, no partner, no parent.
+pub(super) const NONE: u32 = u32::MAX;
 /// How many pairs a cycle that is turned over has at most; at 4 a fiftieth of the weight is missing,
 /// more than 10 find next to nothing.
 const MOST_NEW: usize = 8;
 /// Less gain than this is rounding.
 const LEAST_GAIN: f64 = 1e-9;
 
-/// For every node its three neighbours and what to be paired with each is worth.
+/// For every node its neighbours, some [`NONE`], and what to be paired with each is worth.
 pub(super) type Arcs = [[(u32, f64); 3]];
 
-/// The partner of every node; none where there is no perfect matching.
-pub(super) fn perfect(arcs: &Arcs, progress: &Progress) -> Result<Option<Vec<u32>>, Cancelled> {
+/// The partner of every node in a matching that leaves as few without one as can be.
+pub(super) fn largest(arcs: &Arcs, progress: &Progress) -> Result<Vec<u32>, Cancelled> {
     let mut search = Search::new(arcs, greedy(arcs));
     for node in 0..arcs.len() as u32 {
         if node % 1024 == 0 {
             progress.at(0.5 * f64::from(node) / arcs.len() as f64)?;
         }
-        if search.mate[node as usize] == NONE && !search.augment(node) {
-            return Ok(None);
+        if search.mate[node as usize] == NONE {
+            // A node that finds no way now finds none later.
+            search.augment(node);
         }
     }
     let mut mate = search.mate;
     improve(arcs, &mut mate, &progress.part("", 0.5, 1.0))?;
-    Ok(Some(mate))
+    Ok(mate)
 }
 
 /// Pairs the dearest edge of what is left, again and again.
 fn greedy(arcs: &Arcs) -> Vec<u32> {
     let mut edges: Vec<(f64, u32, u32)> = Vec::with_capacity(3 * arcs.len() / 2);
     for (a, arcs) in (0..).zip(arcs) {
-        let later = arcs.iter().filter(|&&(b, _)| a < b);
+        let later = arcs.iter().filter(|&&(b, _)| b != NONE && a < b);
         edges.extend(later.map(|&(b, weight)| (weight, a, b)));
     }
     edges.sort_by(|x, y| y.0.total_cmp(&x.0).then((x.1, x.2).cmp(&(y.1, y.2))));
@@ -115,7 +116,10 @@ impl<'a> Search<'a> {
         self.reach(root);
         while let Some(v) = self.queue.pop_front() {
             for (to, _) in self.arcs[v as usize] {
-                if self.base[v as usize] == self.base[to as usize] || self.mate[v as usize] == to {
+                if to == NONE
+                    || self.base[v as usize] == self.base[to as usize]
+                    || self.mate[v as usize] == to
+                {
                     continue;
                 }
                 let mate = self.mate[to as usize];
@@ -184,13 +188,26 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Turns over alternating cycles that gain weight until none of up to [`MOST_NEW`] pairs is left.
+/// Turns over alternating cycles that gain weight, and ways from nodes without a partner, until none
+/// of up to [`MOST_NEW`] pairs is left.
 pub(super) fn improve(arcs: &Arcs, mate: &mut [u32], progress: &Progress) -> Result<(), Cancelled> {
     loop {
         let mut is_done = true;
         for a in 0..mate.len() as u32 {
             if a % 1024 == 0 {
                 progress.at(f64::from(a) / mate.len() as f64)?;
+            }
+            let mut a = a;
+            while mate[a as usize] == NONE {
+                let Some(way) = gaining_way(arcs, mate, a) else {
+                    break;
+                };
+                is_done = false;
+                for pair in way.chunks_exact(2) {
+                    (mate[pair[0] as usize], mate[pair[1] as usize]) = (pair[1], pair[0]);
+                }
+                a = way[way.len() - 1];
+                mate[a as usize] = NONE;
             }
             while let Some(cycle) = gaining_cycle(arcs, mate, a) {
                 is_done = false;
@@ -218,6 +235,9 @@ fn worth(arcs: &Arcs, a: u32, b: u32) -> f64 {
 /// that others need not be followed.
 fn gaining_cycle(arcs: &Arcs, mate: &[u32], a: u32) -> Option<Vec<u32>> {
     let b = mate[a as usize];
+    if b == NONE {
+        return None;
+    }
     let mut path = vec![a, b];
     extend(arcs, mate, &mut path, -worth(arcs, a, b)).then_some(path)
 }
@@ -226,7 +246,8 @@ fn extend(arcs: &Arcs, mate: &[u32], path: &mut Vec<u32>, gain: f64) -> bool {
     let [first, last] = [path[0], path[path.len() - 1]];
     for (next, worth_of_next) in arcs[last as usize] {
         let gain = gain + worth_of_next;
-        if gain <= LEAST_GAIN || next == mate[last as usize] {
+        let is_free = next == NONE || mate[next as usize] == NONE;
+        if is_free || gain <= LEAST_GAIN || next == mate[last as usize] {
             continue;
         }
         if next == first {
@@ -238,6 +259,29 @@ fn extend(arcs: &Arcs, mate: &[u32], path: &mut Vec<u32>, gain: f64) -> bool {
         let partner = mate[next as usize];
         path.extend([next, partner]);
         if extend(arcs, mate, path, gain - worth(arcs, next, partner)) {
+            return true;
+        }
+        path.truncate(path.len() - 2);
+    }
+    false
+}
+
+/// An alternating way from a node without a partner to one that loses its own, and gains weight.
+fn gaining_way(arcs: &Arcs, mate: &[u32], free: u32) -> Option<Vec<u32>> {
+    let mut path = vec![free];
+    lead(arcs, mate, &mut path, 0.0).then_some(path)
+}
+
+fn lead(arcs: &Arcs, mate: &[u32], path: &mut Vec<u32>, gain: f64) -> bool {
+    let last = path[path.len() - 1];
+    for (next, worth_of_next) in arcs[last as usize] {
+        if next == NONE || path.contains(&next) || path.len() > MOST_NEW {
+            continue;
+        }
+        let partner = mate[next as usize];
+        let gain = gain + worth_of_next - worth(arcs, next, partner);
+        path.extend([next, partner]);
+        if gain > LEAST_GAIN || lead(arcs, mate, path, gain) {
             return true;
         }
         path.truncate(path.len() - 2);
@@ -291,7 +335,7 @@ mod tests {
     fn every_closed_surface_is_paired_whole() {
         for (i, (name, mesh)) in shapes::closed(5).into_iter().enumerate() {
             let arcs = arcs(&mesh, i as u64);
-            let mate = perfect(&arcs, &Progress::none()).unwrap().unwrap();
+            let mate = largest(&arcs, &Progress::none()).unwrap();
             for (a, &b) in (0..).zip(&mate) {
                 assert_eq!(mate[b as usize], a, "{name}");
                 assert!(arcs[a as usize].iter().any(|arc| arc.0 == b), "{name}");
@@ -303,12 +347,12 @@ mod tests {
     fn small_matchings_are_the_best_and_larger_ones_have_no_small_gain() {
         for seed in 0..40 {
             let arcs = arcs(&shapes::sphere(1), seed);
-            let mate = perfect(&arcs, &Progress::none()).unwrap().unwrap();
+            let mate = largest(&arcs, &Progress::none()).unwrap();
             let most = best(&arcs, &mut vec![NONE; arcs.len()]);
             assert!((total(&arcs, &mate) - most).abs() < 1e-9, "{seed}");
         }
         let arcs = arcs(&shapes::sphere(6), 1);
-        let mate = perfect(&arcs, &Progress::none()).unwrap().unwrap();
+        let mate = largest(&arcs, &Progress::none()).unwrap();
         assert!((0..arcs.len() as u32).all(|a| gaining_cycle(&arcs, &mate, a).is_none()));
         assert!(total(&arcs, &mate) > 1.03 * total(&arcs, &complete(&arcs)));
     }
@@ -323,7 +367,7 @@ mod tests {
     }
 
     #[test]
-    fn blossoms_do_not_hide_a_way_and_a_graph_with_bridges_is_refused() {
+    fn blossoms_do_not_hide_a_way_and_bridges_leave_as_few_as_can_be() {
         // Two triangles joined by an edge; every node has a third arc to a neighbour it has.
         let flat = |list: [[u32; 3]; 6]| list.map(|to| to.map(|b| (b, 1.0)));
         let joined = flat([
@@ -351,6 +395,7 @@ mod tests {
             [7, 8, 8],
         ];
         let star = star.map(|to| to.map(|b| (b, 1.0)));
-        assert_eq!(perfect(&star, &Progress::none()), Ok(None));
+        let mate = largest(&star, &Progress::none()).unwrap();
+        assert_eq!(mate.iter().filter(|&&m| m == NONE).count(), 2);
     }
 }

@@ -10,9 +10,13 @@ const FEWEST: usize = 6;
 /// No quad.
 const GONE: [u32; 4] = [u32::MAX; 4];
 
-/// Joins the two quads of every vertex that has no others, as long as nothing folds on the sphere.
-/// Returns the vertices that are left, in their order, by which corners are numbered now.
-pub(super) fn without(quads: &mut Vec<[u32; 4]>, sphere: &[DVec3]) -> Vec<VertexId> {
+/// Joins the two quads of every vertex that has no others and is not held, as long as nothing folds
+/// on the sphere. Returns the vertices that are left, in their order.
+pub(super) fn without(
+    quads: &mut Vec<[u32; 4]>,
+    is_held: &[bool],
+    sphere: &[DVec3],
+) -> Vec<VertexId> {
     let mut rings: Vec<Vec<u32>> = vec![Vec::new(); sphere.len()];
     for (i, quad) in (0..).zip(&*quads) {
         for &v in quad {
@@ -22,6 +26,9 @@ pub(super) fn without(quads: &mut Vec<[u32; 4]>, sphere: &[DVec3]) -> Vec<Vertex
     let mut n_left = quads.len();
     let mut queue: Vec<u32> = (0..sphere.len() as u32).rev().collect();
     while let Some(v) = queue.pop() {
+        if is_held[v as usize] {
+            continue;
+        }
         let &[first, second] = &rings[v as usize][..] else {
             continue;
         };
@@ -47,7 +54,8 @@ pub(super) fn without(quads: &mut Vec<[u32; 4]>, sphere: &[DVec3]) -> Vec<Vertex
         quads[second as usize] = GONE;
     }
     quads.retain(|quad| *quad != GONE);
-    compact(quads, &rings)
+    let vertices = (0..sphere.len()).filter(|&v| is_held[v] || !rings[v].is_empty());
+    vertices.map(VertexId::from_index).collect()
 }
 
 /// The quad around a vertex with two quads, from one end of an inner diagonal.
@@ -67,22 +75,4 @@ fn joined([one, other]: [[u32; 4]; 2], v: u32, sphere: &[DVec3]) -> Option<[u32;
         is_positive(p, q, r) && is_positive(p, r, s)
     };
     ways.into_iter().find(is_inner)
-}
-
-/// Leaves out vertices without a quad.
-fn compact(quads: &mut [[u32; 4]], rings: &[Vec<u32>]) -> Vec<VertexId> {
-    let mut number = vec![0; rings.len()];
-    let mut left = Vec::with_capacity(rings.len());
-    for (v, _) in rings
-        .iter()
-        .enumerate()
-        .filter(|(_, ring)| !ring.is_empty())
-    {
-        number[v] = left.len() as u32;
-        left.push(VertexId::from_index(v));
-    }
-    for corner in quads.iter_mut().flatten() {
-        *corner = number[*corner as usize];
-    }
-    left
 }

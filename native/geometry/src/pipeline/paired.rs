@@ -11,11 +11,11 @@ use super::even::{either_side, triangles};
 use super::part::{Ground, Wanted, embed_mesh};
 use super::probe::Halves;
 use crate::deform::{self, Deformed, Held, Target};
-use crate::mesh::VertexMap;
-use crate::pair::{self, Paired};
+use crate::mesh::{VertexId, VertexMap};
+use crate::pair::{self, Paired, Stay};
 use crate::pipeline;
 use crate::progress::{Cancelled, Progress};
-use crate::sphere::{self, Adaptive};
+use crate::sphere;
 use crate::sphere_map::SphereMap;
 use crate::{decimate, embed, measure};
 
@@ -94,7 +94,7 @@ pub fn paired(
     clock: &mut Clock,
     progress: &Progress<'_>,
 ) -> Result<Result<Laid, String>, Cancelled> {
-    if wanted.n_faces < FEWEST {
+    if wanted.n_faces < FEWEST && ground.opening.is_none() {
         let reason = format!("{} quads are too few to be pairs", wanted.n_faces);
         return Ok(Err(reason));
     }
@@ -117,24 +117,25 @@ struct Pairs {
     map: SphereMap,
     paired: Paired,
     report: Option<sphere::Report>,
+    /// How many quads lie on what is real in the end.
+    n_quads: f64,
 }
 
 /// What makes pairs of so many triangles.
 type Source<'a> = dyn FnMut(usize, &Progress<'_>) -> Result<Pairs, pipeline::Error> + 'a;
 
-/// Pairs whose count, times `factor`, is near what is wanted: where vertices of two quads were taken
-/// out more triangles are asked for.
+/// Pairs whose count is near what is wanted: where vertices of two quads were taken out more triangles
+/// are asked for. It begins with a number of them.
 fn counted(
-    (wanted, factor): (usize, usize),
+    (wanted, n_faces): (usize, f64),
     make: &mut Source<'_>,
     progress: &Progress<'_>,
 ) -> Result<Pairs, pipeline::Error> {
     let even = |n: f64| 2 * (n / 2.0).round().max(2.0) as usize;
-    let mut n_faces = even(2.0 * wanted as f64 / factor as f64);
+    let mut n_faces = even(n_faces);
     let mut pairs = make(n_faces, &progress.part("", 0.0, 0.5))?;
     for _ in 1..N_TRIES {
-        let found = factor * pairs.paired.quads.n_faces();
-        let share = wanted as f64 / found as f64;
+        let share = wanted as f64 / pairs.n_quads;
         let next = even(share * n_faces as f64);
         if (share - 1.0).abs() < NEAR_COUNT || next == n_faces {
             break;
@@ -152,49 +153,62 @@ fn quarters(
     clock: &mut Clock,
     progress: &Progress<'_>,
 ) -> Result<Laid, pipeline::Error> {
-    let lines = ground.opening.map_or(&[][..], |opening| &opening.lines);
-    let density = VertexMap::filled(map.mesh().n_vertices(), 1.0);
     let mut make = |n_faces: usize, progress: &Progress<'_>| {
-        let settings = sphere::Settings {
-            n_faces,
-            seed: wanted.settings.seed,
-            ..sphere::Settings::default()
-        };
-        let part = progress.part("sphere", 0.0, 0.5);
-        let sized = || sphere::sized(map, (&density, lines), &settings, &part);
-        let made = clock.step("sphere", sized)?;
-        let held = match ground.opening {
-            Some(opening) => opening.held(map, &made, &part)?,
-            None => Held::default(),
-        };
-        let Adaptive {
-            primitive, report, ..
-        } = made;
-        let primitive = (&primitive, &held);
-        let part = progress.part("deform", 0.5, 0.8);
-        let settings = deform::Settings {
-            separates: false,
-            ..ground.deform()
-        };
-        let even = clock.step("deform", || {
-            deform::deform_held(map, primitive, ground.target, &settings, &part)
-        })?;
+        let part = progress.part("", 0.0, 0.8);
+        let (even, held, report) = even(wanted, (map, ground), n_faces, (clock, &part))?;
         let mesh = triangles(&even.mesh);
         let kept = either_side(&mesh, &even.features);
+        let firm = ground.opening.map(|_| either_side(&mesh, &held.edges));
         let map = SphereMap::prove(mesh, VertexMap::from_vec(even.sphere));
         let map = map.map_err(embed::Error::from)?;
         let part = progress.part("pair", 0.8, 1.0);
-        let paired = clock.step("pair", || pair::pair(&map, &kept, &part))?;
+        let paired = clock.step("pair", || {
+            let (kept, firm) = (&kept, firm.as_ref());
+            pair::pair(&map, Stay { kept, firm }, &part)
+        })?;
+        let real = ground.real_share((&even.mesh, &held.edges), &part)?;
         Ok(Pairs {
             map,
+            n_quads: paired.n_once_split() as f64 * real,
             paired,
             report: Some(report),
         })
     };
     let part = progress.part("", 0.0, 0.7);
-    let mut pairs = counted((wanted.n_faces, 4), &mut make, &part)?;
+    let count = (ground.n_asked(wanted), wanted.n_faces as f64 / 2.0);
+    let mut pairs = counted(count, &mut make, &part)?;
     pairs.paired = pair::split(&pairs.paired);
     pairs.lay(ground, clock, &progress.part("deform", 0.7, 1.0))
+}
+
+/// Even triangles on a part, so many, and which of their edges were made along borders.
+fn even(
+    wanted: &Wanted<'_>,
+    (map, ground): (&SphereMap, Ground<'_>),
+    n_faces: usize,
+    (clock, progress): (&mut Clock, &Progress<'_>),
+) -> Result<(Deformed, Held, sphere::Report), pipeline::Error> {
+    let lines = ground.opening.map_or(&[][..], |opening| &opening.lines);
+    let density = VertexMap::filled(map.mesh().n_vertices(), 1.0);
+    let settings = sphere::Settings {
+        n_faces,
+        seed: wanted.settings.seed,
+        ..sphere::Settings::default()
+    };
+    let part = progress.part("sphere", 0.0, 0.6);
+    let sized = || sphere::sized(map, (&density, lines), &settings, &part);
+    let made = clock.step("sphere", sized)?;
+    let held = ground.held(map, &made, &part)?;
+    let primitive = (&made.primitive, &held);
+    let part = progress.part("deform", 0.6, 1.0);
+    let settings = deform::Settings {
+        separates: false,
+        ..ground.deform()
+    };
+    let even = clock.step("deform", || {
+        deform::deform_held(map, primitive, ground.target, &settings, &part)
+    })?;
+    Ok((even, held, made.report))
 }
 
 /// The part's own triangles, more or fewer, paired.
@@ -218,15 +232,23 @@ fn own(
         let part = progress.part("embed", 0.3, 0.8);
         let embedded = clock.step("embed", || embed_mesh(mesh, wanted.predictor, &part))?;
         let part = progress.part("pair", 0.8, 1.0);
-        let paired = clock.step("pair", || pair::pair(&embedded.map, &kept, &part))?;
+        let paired = clock.step("pair", || {
+            let (kept, firm) = (&kept, None);
+            pair::pair(&embedded.map, Stay { kept, firm }, &part)
+        })?;
         Ok(Pairs {
             map: embedded.map,
+            n_quads: paired.quads.n_faces() as f64,
             paired,
             report: None,
         })
     };
     let part = progress.part("", 0.0, 0.7);
-    let pairs = counted((wanted.n_faces, 1), &mut make, &part)?;
+    let pairs = counted(
+        (wanted.n_faces, 2.0 * wanted.n_faces as f64),
+        &mut make,
+        &part,
+    )?;
     pairs.lay(ground, clock, &progress.part("deform", 0.7, 1.0))
 }
 
@@ -249,11 +271,23 @@ impl Pairs {
             },
             ..ground.deform()
         };
-        let quads = (&self.paired.quads, &self.paired.kept[..]);
+        let Paired { quads, kept, firm } = &self.paired;
+        let at = |v: VertexId| {
+            let place = self.map.locate(quads.position(v));
+            self.map.surface_position(place)
+        };
+        let mut held = match ground.opening {
+            Some(opening) => opening.held_at(firm, at, progress)?,
+            None => Held::default(),
+        };
+        held.edges.extend(kept);
+        held.edges.sort_unstable();
+        held.edges.dedup();
+        let quads = (quads, &held);
         let deformed = clock.step("deform", || {
             deform::lay(&self.map, quads, ground.target, &settings, progress)
         })?;
-        let deformed = ground.opened(deformed, progress)?;
+        let deformed = ground.opened(deformed, firm, progress)?;
         let deformed = deformed.map_err(|reason| pipeline::Error::Unopened { reason })?;
         Ok(Laid::new(deformed, self.report, ground.bare()))
     }
@@ -277,7 +311,7 @@ mod tests {
     use super::*;
     use crate::elementary::sin_cos;
     use crate::embed::Solver;
-    use crate::mesh::{TriangleMesh, VertexId};
+    use crate::mesh::{HalfedgeMap, TriangleMesh, VertexId};
     use crate::pipeline::Settings;
     use crate::pipeline::density::Density;
     use crate::pipeline::marks::Marks;
@@ -300,7 +334,9 @@ mod tests {
         let quiet = Progress::none();
         let map = embed_mesh(mesh.clone(), wanted.predictor, &quiet).unwrap();
         let target = Target::new(mesh.clone(), &quiet).unwrap();
-        let laid = paired(&wanted, (&map.map, &target), &mut Clock::default(), &quiet);
+        let marked = HalfedgeMap::filled(3 * mesh.n_faces(), false);
+        let ground = Ground::closed(&target, &marked);
+        let laid = paired(&wanted, (&map.map, ground), &mut Clock::default(), &quiet);
         laid.unwrap().unwrap()
     }
 

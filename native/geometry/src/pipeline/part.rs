@@ -21,6 +21,7 @@ use crate::embed::{Embedded, OffsetPredictor};
 use crate::hierarchy::CollapseHierarchy;
 use crate::mesh::{HalfedgeMap, PolygonMesh, TriangleMesh, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
+use crate::sphere::Adaptive;
 use crate::sphere_map::SphereMap;
 use crate::{decimate, deform, embed, measure, sphere};
 
@@ -75,6 +76,8 @@ pub struct Ground<'a> {
     density: Option<&'a VertexMap<f64>>,
     /// The axis across the plane of symmetry.
     axis: Option<usize>,
+    /// How many faces are wanted on what is real.
+    n_asked: usize,
     /// What is real of the target, where it was closed.
     pub opening: Option<&'a Opening>,
 }
@@ -136,6 +139,7 @@ impl PartJob<'_> {
             marked: &marked,
             density: density.as_ref(),
             axis,
+            n_asked,
             opening: opening.as_ref(),
         };
         let made = wanted.make(start, ground, clock, &stage)?;
@@ -284,7 +288,7 @@ impl Wanted<'_> {
         let settings = ground.deform();
         let deform = || deform::deform_held(map, primitive, ground.target, &settings, &stage);
         let deformed = clock.step("deform", deform)?;
-        let deformed = ground.opened(deformed, progress)?;
+        let deformed = ground.opened(deformed, &placed.held.edges, progress)?;
         let deformed = deformed.map_err(|reason| Error::Unopened { reason })?;
         Ok(Laid::new(deformed, placed.report, ground.bare()))
     }
@@ -372,10 +376,7 @@ impl Wanted<'_> {
                 let lines = ground.opening.map_or(&[][..], |opening| &opening.lines);
                 let wish = (&density, lines);
                 let made = sphere::sized(&map, wish, &settings, progress)?;
-                let held = match ground.opening {
-                    Some(opening) => opening.held(&map, &made, progress)?,
-                    None => Held::default(),
-                };
+                let held = ground.held(&map, &made, progress)?;
                 return Ok(Placed {
                     map,
                     primitive: made.primitive,
@@ -403,7 +404,7 @@ impl Wanted<'_> {
     }
 }
 
-impl Ground<'_> {
+impl<'a> Ground<'a> {
     /// The part as it came, open or not.
     pub fn bare(&self) -> &deform::Target {
         self.opening.map_or(self.target, |opening| &opening.bare)
@@ -417,16 +418,66 @@ impl Ground<'_> {
         }
     }
 
-    /// Faces that lie on it, those on what is real alone; or why these are not the part.
+    /// Faces that lie on it, those on what is real alone; or why these are not the part. The edges along
+    /// its borders are given.
     pub fn opened(
         &self,
         deformed: Deformed,
+        border: &[[VertexId; 2]],
         progress: &Progress<'_>,
     ) -> Result<Result<Deformed, String>, Cancelled> {
+        match self.opening {
+            Some(opening) => opening.reopened(&deformed, (border, self.target), progress),
+            None => Ok(Ok(deformed)),
+        }
+    }
+
+    /// What of a primitive was made along its borders, held there.
+    pub fn held(
+        &self,
+        map: &SphereMap,
+        made: &Adaptive,
+        progress: &Progress<'_>,
+    ) -> Result<Held, Error> {
+        match self.opening {
+            Some(opening) => opening.held_all(map, made, progress),
+            None => Ok(Held::default()),
+        }
+    }
+
+    /// How many faces are wanted on what is real, of so many on all.
+    pub fn n_asked(&self, wanted: &Wanted<'_>) -> usize {
+        match self.opening {
+            Some(_) => self.n_asked,
+            None => wanted.n_faces,
+        }
+    }
+
+    /// The share of a surface's faces that lie on what is real, between the edges along borders.
+    pub fn real_share(
+        &self,
+        (mesh, border): (&PolygonMesh, &[[VertexId; 2]]),
+        progress: &Progress<'_>,
+    ) -> Result<f64, Cancelled> {
         let Some(opening) = self.opening else {
-            return Ok(Ok(deformed));
+            return Ok(1.0);
         };
-        opening.reopened(&deformed, (&deformed.led, self.target), progress)
+        let is_real = opening.real((mesh, border), self.target, progress)?;
+        let n_real = is_real.iter().filter(|is_real| **is_real).count();
+        Ok(n_real as f64 / is_real.len().max(1) as f64)
+    }
+
+    /// A closed part of which nothing is marked.
+    #[cfg(test)]
+    pub fn closed(target: &'a deform::Target, marked: &'a HalfedgeMap<bool>) -> Self {
+        Self {
+            target,
+            marked,
+            density: None,
+            axis: None,
+            n_asked: 0,
+            opening: None,
+        }
     }
 }
 

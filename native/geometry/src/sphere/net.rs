@@ -64,6 +64,26 @@ impl<'a> Net<'a> {
         is_positive(p, r, q) && is_positive(p, q, l)
     }
 
+    /// Whether an edge is saved from being turned.
+    pub fn is_kept(&self, [a, b]: [VertexId; 2]) -> bool {
+        self.kept.contains(&[a.min(b), a.max(b)])
+    }
+
+    /// The edge from a vertex to another.
+    pub fn halfedge(&self, [a, b]: [VertexId; 2]) -> Option<HalfedgeId> {
+        let mut around = self.triangulation.outgoing(a);
+        around.find(|&h| self.triangulation.target(h) == b)
+    }
+
+    /// Whether the ways over the sphere between two vertices each cross.
+    pub fn cross(&self, one: [VertexId; 2], other: [VertexId; 2]) -> bool {
+        let [[a, b], [c, d]] = [one, other].map(|ends| ends.map(|v| self.sphere[v]));
+        let is_left = is_positive(a, b, c) && is_positive(b, a, d);
+        let is_right = is_positive(a, b, d) && is_positive(b, a, c);
+        (is_left && is_positive(c, d, b) && is_positive(d, c, a))
+            || (is_right && is_positive(c, d, a) && is_positive(d, c, b))
+    }
+
     pub fn n_vertices(&self) -> usize {
         self.places.len()
     }

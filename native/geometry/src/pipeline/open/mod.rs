@@ -6,6 +6,7 @@
 //!
 //! The map is made of the part reduced while it is open, which keeps borders, and closed then.
 
+mod hold;
 mod loops;
 mod puncture;
 mod reopen;

@@ -25,14 +25,7 @@ impl Opening {
         (border, target): (&[[VertexId; 2]], &Target),
         progress: &Progress<'_>,
     ) -> Result<Result<Deformed, String>, Cancelled> {
-        let mesh = &deformed.mesh;
-        let (patches, n_patches) = patches(mesh, border, progress)?;
-        let mut votes = vec![0.0; n_patches];
-        for (face, &patch) in mesh.face_ids().zip(&patches) {
-            let corners: Vec<DVec3> = mesh.face(face).iter().map(|&v| mesh.position(v)).collect();
-            votes[patch as usize] += self.vote(&corners, target);
-        }
-        let is_kept: Vec<bool> = patches.iter().map(|&p| votes[p as usize] > 0.0).collect();
+        let is_kept = self.real((&deformed.mesh, border), target, progress)?;
         let opened = deformed.only(&is_kept, progress)?;
         let opened = self.onto_borders(opened, progress)?;
         let opened = match self.punctured(opened, progress)? {
@@ -59,6 +52,26 @@ impl Opening {
             Some(genus) if Some(genus) != wanted.genus => Err(format!("{genus} handles are left")),
             Some(_) => Ok(opened),
         })
+    }
+
+    /// Which faces lie on what is real, those between some edges together.
+    ///
+    /// # Errors
+    /// When cancelled.
+    pub fn real(
+        &self,
+        (mesh, border): (&PolygonMesh, &[[VertexId; 2]]),
+        target: &Target,
+        progress: &Progress<'_>,
+    ) -> Result<Vec<bool>, Cancelled> {
+        let (patches, n_patches) = patches(mesh, border, progress)?;
+        let mut votes = vec![0.0; n_patches];
+        for (face, &patch) in mesh.face_ids().zip(&patches) {
+            let corners: Vec<DVec3> = mesh.face(face).iter().map(|&v| mesh.position(v)).collect();
+            votes[patch as usize] += self.vote(&corners, target);
+        }
+        let is_real = patches.iter().map(|&patch| votes[patch as usize] > 0.0);
+        Ok(is_real.collect())
     }
 
     /// The area of a face, less than zero if it lies on what is virtual.

@@ -1,13 +1,14 @@
 //! Triangles placed where a surface needs them.
 
 mod creases;
+mod lines;
 mod relax;
 mod sample;
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use creases::Creases;
+use lines::Lined;
 
 use super::net::Net;
 use crate::measure::FeatureLine;
@@ -116,15 +117,19 @@ pub fn sized(
 ) -> Result<Adaptive, AdaptiveError> {
     let n_vertices = settings.n_faces.max(4) / 2 + 2;
     let mut random = Random::new(settings.seed);
-    let creases = Creases::new(map, (density, lines), settings.n_faces);
+    let Lined {
+        mut net,
+        creases,
+        inserted,
+    } = Lined::new(map, (density, lines), settings.n_faces, progress)?;
     let n_free = n_vertices.saturating_sub(4 + creases.places.len());
     let places = creases.clear(map, sample::sample(map, density, n_free, &mut random));
-    let mut net = Net::tetrahedron(map);
     let creases::Inserted {
         vertices,
         edges,
         n_apart,
-    } = creases.insert(&mut net);
+        ..
+    } = inserted;
     let part = progress.part("", 0.0, 0.3);
     scatter(&mut net, &places, &mut random, &part)?;
     let mut is_fixed = VertexMap::filled(net.n_vertices(), false);
