@@ -372,6 +372,9 @@ impl Opening {
             let reason = format!("{} edges along its borders could not be made", made.n_apart);
             return Err(Error::Unopened { reason });
         }
+        if self.edges.is_empty() {
+            return Ok(Held::default());
+        }
         let border = self.edges.tree(progress)?;
         let own = Marked::new(map.mesh(), &self.small).tree(progress)?;
         let at = |v: VertexId| map.surface_position(map.locate(made.primitive.position(v)));

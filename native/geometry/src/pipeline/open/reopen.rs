@@ -98,6 +98,9 @@ impl Opening {
         opened: Deformed,
         progress: &Progress<'_>,
     ) -> Result<Deformed, Cancelled> {
+        if self.edges.is_empty() {
+            return Ok(opened);
+        }
         let mesh = &opened.mesh;
         let edges = PolygonEdges::new(mesh, progress)?;
         let is_border = edges.border_vertices(mesh.n_vertices());
