@@ -430,7 +430,7 @@ impl Wanted<'_> {
     }
 }
 
-impl<'a> Ground<'a> {
+impl Ground<'_> {
     /// The part as it came, open or not.
     pub fn bare(&self) -> &deform::Target {
         self.opening.map_or(self.target, |opening| &opening.bare)
@@ -497,9 +497,11 @@ impl<'a> Ground<'a> {
         let n_real = is_real.iter().filter(|is_real| **is_real).count();
         Ok(n_real as f64 / is_real.len().max(1) as f64)
     }
+}
 
+#[cfg(test)]
+impl<'a> Ground<'a> {
     /// A closed part of which nothing is marked.
-    #[cfg(test)]
     pub fn closed(target: &'a deform::Target, marked: &'a HalfedgeMap<bool>) -> Self {
         Self {
             target,
