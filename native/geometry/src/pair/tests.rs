@@ -60,7 +60,7 @@ fn borders(mesh: &TriangleMesh, seed: u64) -> HalfedgeMap<bool> {
     let mut patch = vec![0; mesh.n_faces()];
     for number in 1..4 {
         let mut open = vec![crate::mesh::FaceId(random.below(mesh.n_faces()) as u32)];
-        for _ in 0..1 + random.below(mesh.n_faces() / 4) {
+        for _ in 0..=random.below(mesh.n_faces() / 4) {
             let at = random.below(open.len());
             let face = open[at];
             patch[face.index()] = number;

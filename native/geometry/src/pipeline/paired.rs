@@ -105,7 +105,7 @@ pub fn paired(
         return Ok(quarters);
     }
     let part = progress.part("", 0.5, 1.0);
-    let own = told(own(wanted, ground, clock, &part))?;
+    let own = told(own(wanted, (map, ground), clock, &part))?;
     Ok(match (quarters, own) {
         (Ok(quarters), Ok(own)) if quarters.is_worse_than(&own) => Ok(own),
         (quarters, own) => quarters.or(own),
@@ -156,19 +156,19 @@ fn quarters(
     let mut make = |n_faces: usize, progress: &Progress<'_>| {
         let part = progress.part("", 0.0, 0.8);
         let (even, held, report) = even(wanted, (map, ground), n_faces, (clock, &part))?;
+        let real = ground.real_share(map, (&even.mesh, &even.sphere), &held.edges, &part)?;
         let mesh = triangles(&even.mesh);
         let kept = either_side(&mesh, &even.features);
         let firm = ground.opening.map(|_| either_side(&mesh, &held.edges));
-        let map = SphereMap::prove(mesh, VertexMap::from_vec(even.sphere));
-        let map = map.map_err(embed::Error::from)?;
+        let own = SphereMap::prove(mesh, VertexMap::from_vec(even.sphere));
+        let own = own.map_err(embed::Error::from)?;
         let part = progress.part("pair", 0.8, 1.0);
         let paired = clock.step("pair", || {
             let (kept, firm) = (&kept, firm.as_ref());
-            pair::pair(&map, Stay { kept, firm }, &part)
+            pair::pair(&own, Stay { kept, firm }, &part)
         })?;
-        let real = ground.real_share((&even.mesh, &held.edges), &part)?;
         Ok(Pairs {
-            map,
+            map: own,
             n_quads: paired.n_once_split() as f64 * real,
             paired,
             report: Some(report),
@@ -178,7 +178,7 @@ fn quarters(
     let count = (ground.n_asked(wanted), wanted.n_faces as f64 / 2.0);
     let mut pairs = counted(count, &mut make, &part)?;
     pairs.paired = pair::split(&pairs.paired);
-    pairs.lay(ground, clock, &progress.part("deform", 0.7, 1.0))
+    pairs.lay((map, ground), clock, &progress.part("deform", 0.7, 1.0))
 }
 
 /// Even triangles on a part, so many, and which of their edges were made along borders.
@@ -214,7 +214,7 @@ fn even(
 /// The part's own triangles, more or fewer, paired.
 fn own(
     wanted: &Wanted<'_>,
-    ground: Ground<'_>,
+    (map, ground): (&SphereMap, Ground<'_>),
     clock: &mut Clock,
     progress: &Progress<'_>,
 ) -> Result<Laid, pipeline::Error> {
@@ -249,14 +249,14 @@ fn own(
         &mut make,
         &part,
     )?;
-    pairs.lay(ground, clock, &progress.part("deform", 0.7, 1.0))
+    pairs.lay((map, ground), clock, &progress.part("deform", 0.7, 1.0))
 }
 
 impl Pairs {
-    /// Lays them on the target.
+    /// Lays them on the target of a map; where there are borders they cover the same sphere.
     fn lay(
         self,
-        ground: Ground<'_>,
+        (map, ground): (&SphereMap, Ground<'_>),
         clock: &mut Clock,
         progress: &Progress<'_>,
     ) -> Result<Laid, pipeline::Error> {
@@ -287,7 +287,7 @@ impl Pairs {
         let deformed = clock.step("deform", || {
             deform::lay(&self.map, quads, ground.target, &settings, progress)
         })?;
-        let deformed = ground.opened(deformed, firm, progress)?;
+        let deformed = ground.opened(map, deformed, firm, progress)?;
         let deformed = deformed.map_err(|reason| pipeline::Error::Unopened { reason })?;
         Ok(Laid::new(deformed, self.report, ground.bare()))
     }

@@ -31,6 +31,11 @@ const MAP_VERTICES_PER_VERTEX: f64 = 2.0;
 /// Fewer vertices than this are not worth saving.
 const LEAST_MAP_VERTICES: usize = 3_000;
 
+/// Along borders the number of triangles is met roughly: they are made so often at most, until they
+/// are off by no more than a share.
+const N_COUNTS: usize = 4;
+const NEAR_COUNT: f64 = 0.01;
+
 /// A part with borders is not made its own image.
 const OPEN_REASON: &str = "it has borders and is not its own image in the plane";
 
@@ -288,7 +293,7 @@ impl Wanted<'_> {
         let settings = ground.deform();
         let deform = || deform::deform_held(map, primitive, ground.target, &settings, &stage);
         let deformed = clock.step("deform", deform)?;
-        let deformed = ground.opened(deformed, &placed.held.edges, progress)?;
+        let deformed = ground.opened(map, deformed, &placed.held.edges, progress)?;
         let deformed = deformed.map_err(|reason| Error::Unopened { reason })?;
         Ok(Laid::new(deformed, placed.report, ground.bare()))
     }
@@ -355,6 +360,37 @@ impl Wanted<'_> {
         2 * (wanted as usize).max(LEAST_MAP_VERTICES)
     }
 
+    /// Triangles that are even on the part, as many as are wanted on what is real.
+    fn adaptive(
+        &self,
+        map: &SphereMap,
+        ground: Ground<'_>,
+        progress: &Progress<'_>,
+    ) -> Result<(Adaptive, Held), Error> {
+        let density = VertexMap::filled(map.mesh().n_vertices(), 1.0);
+        let lines = ground.opening.map_or(&[][..], |opening| &opening.lines);
+        let (mut n_faces, n_asked) = (self.n_faces, ground.n_asked(self) as f64);
+        for n_left in (0..N_COUNTS).rev() {
+            let settings = sphere::Settings {
+                n_faces,
+                seed: self.settings.seed,
+                ..sphere::Settings::default()
+            };
+            let made = sphere::sized(map, (&density, lines), &settings, progress)?;
+            let held = ground.held(map, &made, progress)?;
+            let faces = (&made.primitive, made.primitive.positions());
+            let share = ground.real_share(map, faces, &held.edges, progress)?;
+            let found = share * made.primitive.n_faces() as f64;
+            let next = (n_faces as f64 * n_asked / found.max(1.0)).round() as usize;
+            let is_near = (found - n_asked).abs() <= NEAR_COUNT * n_asked;
+            if lines.is_empty() || is_near || n_left == 0 || next == n_faces {
+                return Ok((made, held));
+            }
+            n_faces = next;
+        }
+        unreachable!("the last count is taken as it is")
+    }
+
     /// Makes the primitive and chooses its map: adaptive triangles lie where the surface needs them
     /// on any map; a fixed primitive is even on the sphere and needs a map that keeps areas.
     fn place(
@@ -366,17 +402,7 @@ impl Wanted<'_> {
         let seed = self.settings.seed;
         let fixed = match self.settings.primitive() {
             Primitive::Adaptive => {
-                let n_faces = self.n_faces;
-                let settings = sphere::Settings {
-                    n_faces,
-                    seed,
-                    ..sphere::Settings::default()
-                };
-                let density = VertexMap::filled(map.mesh().n_vertices(), 1.0);
-                let lines = ground.opening.map_or(&[][..], |opening| &opening.lines);
-                let wish = (&density, lines);
-                let made = sphere::sized(&map, wish, &settings, progress)?;
-                let held = ground.held(&map, &made, progress)?;
+                let (made, held) = self.adaptive(&map, ground, progress)?;
                 return Ok(Placed {
                     map,
                     primitive: made.primitive,
@@ -404,7 +430,7 @@ impl Wanted<'_> {
     }
 }
 
-impl<'a> Ground<'a> {
+impl Ground<'_> {
     /// The part as it came, open or not.
     pub fn bare(&self) -> &deform::Target {
         self.opening.map_or(self.target, |opening| &opening.bare)
@@ -419,17 +445,20 @@ impl<'a> Ground<'a> {
     }
 
     /// Faces that lie on it, those on what is real alone; or why these are not the part. The edges along
-    /// its borders are given.
+    /// its borders are given, and the map whose sphere they cover.
     pub fn opened(
         &self,
+        map: &SphereMap,
         deformed: Deformed,
         border: &[[VertexId; 2]],
         progress: &Progress<'_>,
     ) -> Result<Result<Deformed, String>, Cancelled> {
-        match self.opening {
-            Some(opening) => opening.reopened(&deformed, (border, self.target), progress),
-            None => Ok(Ok(deformed)),
-        }
+        let Some(opening) = self.opening else {
+            return Ok(Ok(deformed));
+        };
+        let faces = (&deformed.mesh, &deformed.sphere[..]);
+        let is_real = opening.real(map, faces, border, progress)?;
+        opening.kept(&deformed, &is_real, progress)
     }
 
     /// What of a primitive was made along its borders, held there.
@@ -456,19 +485,23 @@ impl<'a> Ground<'a> {
     /// The share of a surface's faces that lie on what is real, between the edges along borders.
     pub fn real_share(
         &self,
-        (mesh, border): (&PolygonMesh, &[[VertexId; 2]]),
+        map: &SphereMap,
+        faces: (&PolygonMesh, &[DVec3]),
+        border: &[[VertexId; 2]],
         progress: &Progress<'_>,
     ) -> Result<f64, Cancelled> {
         let Some(opening) = self.opening else {
             return Ok(1.0);
         };
-        let is_real = opening.real((mesh, border), self.target, progress)?;
+        let is_real = opening.real(map, faces, border, progress)?;
         let n_real = is_real.iter().filter(|is_real| **is_real).count();
         Ok(n_real as f64 / is_real.len().max(1) as f64)
     }
+}
 
+#[cfg(test)]
+impl<'a> Ground<'a> {
     /// A closed part of which nothing is marked.
-    #[cfg(test)]
     pub fn closed(target: &'a deform::Target, marked: &'a HalfedgeMap<bool>) -> Self {
         Self {
             target,

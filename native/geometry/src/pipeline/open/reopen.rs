@@ -8,8 +8,9 @@ use super::Opening;
 use crate::deform::{Deformed, Target};
 use crate::groups::Groups;
 use crate::measure::{PolygonEdges, area_vector, topology};
-use crate::mesh::{PolygonMesh, VertexId};
+use crate::mesh::{FaceMap, HalfedgeMap, Id, PolygonMesh, TriangleMesh, VertexId};
 use crate::progress::{Cancelled, Progress};
+use crate::sphere_map::SphereMap;
 
 impl Opening {
     /// The faces on what is real, those between some edges together; or why that is not the part.
@@ -25,8 +26,28 @@ impl Opening {
         (border, target): (&[[VertexId; 2]], &Target),
         progress: &Progress<'_>,
     ) -> Result<Result<Deformed, String>, Cancelled> {
-        let is_kept = self.real((&deformed.mesh, border), target, progress)?;
-        let opened = deformed.only(&is_kept, progress)?;
+        let mesh = &deformed.mesh;
+        let (patches, n_patches) = patches(mesh, border, progress)?;
+        let mut votes = vec![0.0; n_patches];
+        for (face, &patch) in mesh.face_ids().zip(&patches) {
+            let corners: Vec<DVec3> = mesh.face(face).iter().map(|&v| mesh.position(v)).collect();
+            votes[patch as usize] += self.vote(&corners, target);
+        }
+        let is_kept: Vec<bool> = patches.iter().map(|&p| votes[p as usize] > 0.0).collect();
+        self.kept(deformed, &is_kept, progress)
+    }
+
+    /// Some faces alone, their borders moved onto those of the part; or why that is not the part.
+    ///
+    /// # Errors
+    /// When cancelled.
+    pub fn kept(
+        &self,
+        deformed: &Deformed,
+        is_kept: &[bool],
+        progress: &Progress<'_>,
+    ) -> Result<Result<Deformed, String>, Cancelled> {
+        let opened = deformed.only(is_kept, progress)?;
         let opened = self.onto_borders(opened, progress)?;
         let opened = match self.punctured(opened, progress)? {
             Ok(opened) => self.welded(opened, progress)?,
@@ -54,24 +75,27 @@ impl Opening {
         })
     }
 
-    /// Which faces lie on what is real, those between some edges together.
+    /// Which faces lie on what is real, those between edges along borders together, by where they lie
+    /// on the sphere of the map; of sheets that lie on each other nothing else tells.
     ///
     /// # Errors
     /// When cancelled.
     pub fn real(
         &self,
-        (mesh, border): (&PolygonMesh, &[[VertexId; 2]]),
-        target: &Target,
+        map: &SphereMap,
+        (mesh, sphere): (&PolygonMesh, &[DVec3]),
+        border: &[[VertexId; 2]],
         progress: &Progress<'_>,
     ) -> Result<Vec<bool>, Cancelled> {
-        let (patches, n_patches) = patches(mesh, border, progress)?;
-        let mut votes = vec![0.0; n_patches];
-        for (face, &patch) in mesh.face_ids().zip(&patches) {
-            let corners: Vec<DVec3> = mesh.face(face).iter().map(|&v| mesh.position(v)).collect();
-            votes[patch as usize] += self.vote(&corners, target);
+        let sides = sides(mesh, border, progress)?;
+        let is_real = real_faces(map.mesh(), &self.small);
+        let mut votes = 0_i64;
+        for (face, &side) in mesh.face_ids().zip(&sides) {
+            let middle: DVec3 = mesh.face(face).iter().map(|v| sphere[v.index()]).sum();
+            let is_on_real = is_real[map.locate(middle).face];
+            votes += if is_on_real == side { 1 } else { -1 };
         }
-        let is_real = patches.iter().map(|&patch| votes[patch as usize] > 0.0);
-        Ok(is_real.collect())
+        Ok(sides.into_iter().map(|side| side == (votes > 0)).collect())
     }
 
     /// The area of a face, less than zero if it lies on what is virtual.
@@ -138,4 +162,55 @@ fn patches(
         }
     }
     Ok(groups.numbered())
+}
+
+/// On which side of some edges each face lies: the other one beyond every edge.
+fn sides(
+    mesh: &PolygonMesh,
+    border: &[[VertexId; 2]],
+    progress: &Progress<'_>,
+) -> Result<Vec<bool>, Cancelled> {
+    let border: HashSet<[VertexId; 2]> =
+        border.iter().map(|&[a, b]| [a.min(b), a.max(b)]).collect();
+    let edges = PolygonEdges::new(mesh, progress)?;
+    let mut beyond = vec![Vec::new(); mesh.n_faces()];
+    for c in 0..edges.n_corners() {
+        if let Some(twin) = edges.twin(c) {
+            let ends = edges.ends[edges.of_corner[c] as usize];
+            let [own, other] = [c, twin].map(|c| edges.face_of[c] as usize);
+            beyond[own].push((other, border.contains(&ends)));
+        }
+    }
+    Ok(coloured(&beyond))
+}
+
+/// The faces of a closed part that are real: the first one, and so on across its borders.
+fn real_faces(mesh: &TriangleMesh, border: &HalfedgeMap<bool>) -> FaceMap<bool> {
+    let around = |face| {
+        let first = mesh.halfedge(face);
+        let all = [first, first.next(), first.prev()].into_iter();
+        let beyond = all.filter_map(|h| Some((mesh.twin(h)?.face().index(), border[h])));
+        beyond.collect()
+    };
+    let beyond: Vec<Vec<(usize, bool)>> = mesh.face_ids().map(around).collect();
+    FaceMap::from_vec(coloured(&beyond))
+}
+
+/// True for the first of some things, and the same or not for their neighbours, as these say.
+fn coloured(neighbours: &[Vec<(usize, bool)>]) -> Vec<bool> {
+    let mut colour = vec![None; neighbours.len()];
+    let mut open = vec![0];
+    colour[0] = Some(true);
+    while let Some(at) = open.pop() {
+        for &(next, is_other) in &neighbours[at] {
+            if colour[next].is_none() {
+                colour[next] = colour[at].map(|own| own != is_other);
+                open.push(next);
+            }
+        }
+    }
+    colour
+        .into_iter()
+        .map(|colour| colour == Some(true))
+        .collect()
 }

@@ -265,7 +265,8 @@ fn join(net: &mut Net, [a, b]: [VertexId; 2]) -> Result<(), Vec<[VertexId; 2]>> 
         }
     }
     let mut open = VecDeque::from(across(net, [a, b]));
-    let stay: Vec<[VertexId; 2]> = open.iter().copied().filter(|e| net.is_kept(*e)).collect();
+    let stay = open.iter().filter(|ends| net.is_kept(**ends));
+    let stay: Vec<[VertexId; 2]> = stay.map(|&[a, b]| [a.min(b), a.max(b)]).collect();
     if !stay.is_empty() {
         return Err(stay);
     }

@@ -1,8 +1,8 @@
 use glam::DVec3;
 
 use super::*;
-use crate::measure::corner_angle;
-use crate::mesh::TriangleMesh;
+use crate::measure::{corner_angle, feature_lines};
+use crate::mesh::{HalfedgeId, TriangleMesh};
 use crate::progress::CancelToken;
 use crate::shapes;
 
@@ -121,4 +121,42 @@ fn a_raised_flag_stops_it() {
     token.cancel();
     let stopped = adaptive(&map, &Settings::default(), &Progress::silent(token));
     assert_eq!(stopped.unwrap_err(), AdaptiveError::Cancelled(Cancelled));
+}
+
+#[test]
+fn loops_nearer_to_each_other_than_triangles_are_long_keep_their_sides() {
+    let map = map_of(shapes::sphere(24), 24);
+    let mesh = map.mesh();
+    let height = |p: DVec3| (p / p.abs().max_element()).z;
+    let is_inside = |h: HalfedgeId| {
+        let middle = height(mesh.triangle(h.face()).iter().sum::<DVec3>() / 3.0);
+        (0.17..0.33).contains(&middle)
+    };
+    let twin = |h| mesh.twin(h).unwrap();
+    let edges = mesh.halfedge_ids();
+    let band = edges.map(|h| is_inside(h) != is_inside(twin(h)));
+    let lines = feature_lines(mesh, &band.collect());
+    let density = VertexMap::filled(mesh.n_vertices(), 1.0);
+    let settings = Settings {
+        n_faces: 40,
+        ..Settings::default()
+    };
+    let wish = (&density, &lines[..]);
+    let made = sized(&map, wish, &settings, &Progress::none()).unwrap();
+    assert_eq!(made.n_apart, 0);
+    assert_eq!(
+        check_cover(&made.primitive, made.primitive.positions()),
+        Ok(())
+    );
+    // Two caps and the band between them.
+    let faces = made.primitive.faces().map(|f| [f[0], f[1], f[2]]).collect();
+    let net = TriangleMesh::new(made.primitive.positions().to_vec(), faces).unwrap();
+    let mut groups = crate::groups::Groups::new(net.n_faces());
+    for h in net.halfedge_ids() {
+        let [a, b] = [net.origin(h), net.target(h)];
+        if made.on_lines.binary_search(&[a.min(b), a.max(b)]).is_err() {
+            groups.link(h.face().index(), net.twin(h).unwrap().face().index());
+        }
+    }
+    assert_eq!(groups.numbered().1, 3);
 }
