@@ -9,15 +9,15 @@ use crate::mesh::{FaceId, HalfedgeId, Id, PolygonMesh, TriangleMesh, VertexId};
 
 /// All parts in the order of their first faces.
 ///
-/// Without `can_open` a part with borders has a reason not to be done.
+/// Where `closed_alone` says why, a part with borders has that reason not to be done.
 pub fn parts(
-    (mesh, settings, can_open): (&PolygonMesh, &Settings, bool),
+    (mesh, settings, closed_alone): (&PolygonMesh, &Settings, Option<String>),
     apart: &Apart,
     (component, n): (&[u32], usize),
 ) -> Vec<Part> {
     let told = Told {
         mesh,
-        can_open,
+        closed_alone,
         reach: settings
             .weld
             .filter(|_| apart.is_open())
@@ -107,8 +107,8 @@ impl Surface {
 /// Puts what was found in words.
 struct Told<'a> {
     mesh: &'a PolygonMesh,
-    /// Whether a part with borders can be done.
-    can_open: bool,
+    /// Why a part with borders cannot be done, if so.
+    closed_alone: Option<String>,
     /// Up to which gap borders were welded, where they were.
     reach: Option<f64>,
 }
@@ -116,10 +116,7 @@ struct Told<'a> {
 impl Told<'_> {
     fn of_surface(&self, surface: &Surface) -> Vec<Reason> {
         let faces = &surface.faces;
-        let border = match self.can_open {
-            true => None,
-            false => self.border(faces, surface.n_loops, &surface.border),
-        };
+        let border = self.border(faces, surface.n_loops, &surface.border);
         let flat = self.flat(surface);
         let genus = surface.genus();
         let handles = (genus != 0).then(|| {
@@ -153,16 +150,15 @@ impl Told<'_> {
 
     fn border(&self, faces: &[FaceId], n_loops: usize, edges: &[[VertexId; 2]]) -> Option<Reason> {
         let n_edges = edges.len();
+        let why = self.closed_alone.as_ref().filter(|_| n_edges > 0)?;
         let [loops, borders] = [count(n_loops, "border loop"), count(n_edges, "border edge")];
         let weld = match self.reach {
             Some(reach) => format!("; borders farther apart than {reach:.2e} are not welded"),
             None => "; only equal points are welded".to_owned(),
         };
-        let text = format!(
-            "{loops}, {borders}: only closed meshes can be done; fill the holes first{weld}"
-        );
+        let text = format!("{loops}, {borders}: {why}{weld}");
         let flaw = Flaw::Border { n_loops, n_edges };
-        (n_edges > 0).then(|| Reason::new(self.mesh, faces, edges, flaw, text))
+        Some(Reason::new(self.mesh, faces, edges, flaw, text))
     }
 
     fn shared(&self, tangle: &Tangle) -> Option<Reason> {

@@ -10,6 +10,7 @@
 //! resolution.
 
 mod attempt;
+mod borders;
 mod carried;
 mod clock;
 mod crosses;
@@ -46,6 +47,7 @@ mod ways;
 
 pub use crate::transfer::CarriedEdge;
 pub use attempt::Attempt;
+pub use borders::{Borders, Closure, MAX_FILL, Opened};
 pub use carried::CarriedReport;
 pub use clock::{Step, peak_memory_mb};
 pub use crosses::Cross;
@@ -57,7 +59,7 @@ pub use origins::{Origin, Origins};
 pub use paired::Instead;
 pub use report::{Mirrored, PartReport, Reduced, Report};
 pub use scored::score;
-pub use settings::{Borders, Kind, MAX_FACES, MIN_FACES, Primitive, Settings, Style};
+pub use settings::{Kind, MAX_FACES, MIN_FACES, Primitive, Settings, Style};
 pub use small::{MAX_WELD, SmallParts};
 pub use verbs::{Decimated, EmbedReport, EmbeddedParts, decimate, embed};
 pub use warning::{Fault, Warning};

@@ -93,9 +93,15 @@ impl PartJob<'_> {
         let n_asked = wanted.n_faces;
         let (n_input_faces, area) = (part.n_faces(), measure::total_area(&part));
         let closing = Closing::new(&part, wanted.settings, progress)?;
-        let (part, wanted) = match &closing {
-            Some(closing) => (closing.mesh().clone(), wanted.of_closed(&part, closing)),
-            None => (part, wanted),
+        let opened = closing.as_ref().map(Closing::told);
+        let (part, closing) = match closing {
+            Some(closing) if closing.is_filled() => (closing.into_mesh(), None),
+            Some(closing) => (closing.mesh().clone(), Some(closing)),
+            None => (part, None),
+        };
+        let wanted = match &closing {
+            Some(closing) => wanted.of_closed(closing),
+            None => wanted,
         };
         let (marked, density) = (wanted.marks.on(&part), wanted.density.on(&part));
         let Faced {
@@ -104,7 +110,10 @@ impl PartJob<'_> {
             density,
             axis,
             refused,
-        } = face((part, marked, density), (&wanted.role(closing.as_ref()), wanted.mirror.1));
+        } = face(
+            (part, marked, density),
+            (&wanted.role(closing.as_ref()), wanted.mirror.1),
+        );
         let stage = progress.part("decimate", 0.0, 0.2);
         let reduction = clock.step("decimate", || match &closing {
             Some(closing) => wanted.reduce_open(closing, &stage),
@@ -142,6 +151,7 @@ impl PartJob<'_> {
             n_faces: made.deformed.mesh.n_faces(),
             reduced: reduction.reduced,
             decimate: reduction.report,
+            opened,
             embedding,
             flow: made.flow,
             mirrored: refused.or(made.mirrored),
@@ -195,9 +205,10 @@ impl Wanted<'_> {
     }
 
     /// What is to be made of a part that was closed: the faces of what is virtual are made too.
-    fn of_closed(self, open: &TriangleMesh, closing: &Closing) -> Self {
-        let [open, closed] = [open, closing.mesh()].map(|mesh| self.density.amount(mesh));
-        let n_faces = (self.n_faces as f64 * closed / open.max(f64::MIN_POSITIVE)).round();
+    fn of_closed(self, closing: &Closing) -> Self {
+        let [real, closed] =
+            [&closing.real(), closing.mesh()].map(|mesh| self.density.amount(mesh));
+        let n_faces = (self.n_faces as f64 * closed / real.max(f64::MIN_POSITIVE)).round();
         Self {
             n_faces: (n_faces as usize).max(self.n_faces),
             ..self

@@ -1,9 +1,8 @@
 //! Takes the input apart and says what is done with every part: the one place that does.
 //!
-//! A part is what hangs together over edges. One that is closed and has no handles is remeshed; any
-//! other stays as it was, with every reason, and so do parts too small for their share. Filling
-//! borders and cutting handles belong here: they turn a part into closed ones with tagged faces,
-//! which `join` takes out again.
+//! A part is what hangs together over edges. One that is a surface of two sides is remeshed, where
+//! the settings allow its borders; any other stays as it was, with every reason, and so do parts too
+//! small for their share. Closing borders belongs to the run of a part (`open`).
 
 use std::collections::HashMap;
 
@@ -51,7 +50,11 @@ impl Parts {
         progress: &Progress<'_>,
     ) -> Result<(Self, Cleaned), Error> {
         let (component, n) = apart.mesh.face_components();
-        let mut parts = diagnosis::parts((input.mesh, settings, settings.can_open()), &apart, (&component, n));
+        let mut parts = diagnosis::parts(
+            (input.mesh, settings, settings.closed_alone()),
+            &apart,
+            (&component, n),
+        );
         progress.check()?;
         if parts.len() > 1 {
             let amounts = amounts(input, &apart.mesh, progress)?;
@@ -60,7 +63,7 @@ impl Parts {
         Self::chosen(input.mesh, apart, (&component, n), parts, settings)
     }
 
-    /// The same where every part, however small, has to be done.
+    /// The same where every part, however small, has to be done and to be closed.
     ///
     /// # Errors
     /// As above.
@@ -69,8 +72,9 @@ impl Parts {
             strict: true,
             ..Settings::default()
         };
+        let why = "only closed meshes can be embedded; close it first".to_owned();
         let (component, n) = apart.mesh.face_components();
-        let parts = diagnosis::parts((mesh, &settings, false), &apart, (&component, n));
+        let parts = diagnosis::parts((mesh, &settings, Some(why)), &apart, (&component, n));
         let chosen = Self::chosen(mesh, apart, (&component, n), parts, &settings);
         chosen.map(|(_, cleaned)| cleaned)
     }

@@ -10,15 +10,16 @@ mod reopen;
 
 use glam::DVec3;
 
+use super::borders::Opened;
 use super::even::Marked;
 use super::part::embed_mesh;
 use super::{Error, Settings};
 use crate::close::{self, Closed};
 use crate::decimate;
 use crate::deform::{Held, Target};
-use crate::measure::{FeatureLine, feature_lines};
 use crate::embed::Solver;
 use crate::groups::Groups;
+use crate::measure::{FeatureLine, feature_lines};
 use crate::mesh::{FaceMap, HalfedgeId, HalfedgeMap, Id, TriangleMesh, VertexId};
 use crate::mirror::{Doubled, double_sheet};
 use crate::nearest::Bvh;
@@ -67,6 +68,30 @@ impl Closing {
             closed,
             settings,
         }))
+    }
+
+    /// What is told of it.
+    pub fn told(&self) -> Opened {
+        Opened::of(&self.closed)
+    }
+
+    /// Whether all its borders were filled for good: then nothing is opened again.
+    pub fn is_filled(&self) -> bool {
+        self.closed.n_capped + self.closed.n_doubled == 0
+    }
+
+    /// The part, closed; all of it.
+    pub fn into_mesh(self) -> TriangleMesh {
+        self.closed.mesh
+    }
+
+    /// What of the closed part is real: the part itself and what fills borders for good.
+    pub fn real(&self) -> TriangleMesh {
+        let closed = &self.closed;
+        let faces = closed.mesh.face_ids().filter(|&f| closed.is_real[f]);
+        let faces = faces.map(|f| closed.mesh.face(f));
+        let real = TriangleMesh::of_faces(closed.mesh.positions(), faces);
+        real.expect("the real faces of a closed part are a mesh").0
     }
 
     /// The part, closed.
@@ -125,12 +150,8 @@ impl Closing {
         let edges = Marked::new(&self.closed.mesh, &on_border);
         let lines = feature_lines(&self.closed.mesh, &on_border);
         let folds = Marked::new(&self.closed.mesh, &folds(&self.closed));
+        let bare = self.real();
         let is_real = self.closed.is_real;
-        let faces = self.closed.mesh.face_ids();
-        let real = faces.filter(|&f| is_real[f]);
-        let real = real.map(|f| self.closed.mesh.face(f));
-        let real = TriangleMesh::of_faces(self.closed.mesh.positions(), real);
-        let (bare, _) = real.expect("the real faces of a closed part are a mesh");
         Ok(Opening {
             corners: corners(&self.closed.mesh, &lines),
             lines: feature_lines(map.mesh(), &border),
@@ -188,7 +209,9 @@ impl Opening {
         }
         let (side, n_sides) = groups.numbered();
         if n_sides != 2 {
-            return Ok(Err(format!("the even surface has {n_sides} sides, not two")));
+            return Ok(Err(format!(
+                "the even surface has {n_sides} sides, not two"
+            )));
         }
         let mut votes = [0.0; 2];
         for face in mesh.face_ids() {
