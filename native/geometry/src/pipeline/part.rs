@@ -60,6 +60,8 @@ pub struct PartResult {
     /// The edges that lie along sharp or marked ones.
     pub features: Vec<[VertexId; 2]>,
     pub crosses: Vec<Cross>,
+    /// What borders were filled with.
+    pub filling: Vec<[DVec3; 3]>,
     /// The area of the part, the weight of its figures.
     pub area: f64,
     pub report: PartReport,
@@ -94,6 +96,7 @@ impl PartJob<'_> {
         let (n_input_faces, area) = (part.n_faces(), measure::total_area(&part));
         let closing = Closing::new(&part, wanted.settings, progress)?;
         let opened = closing.as_ref().map(Closing::told);
+        let filling = closing.as_ref().map(Closing::filling).unwrap_or_default();
         let (part, closing) = match closing {
             Some(closing) if closing.is_filled() => (closing.into_mesh(), None),
             Some(closing) => (closing.mesh().clone(), Some(closing)),
@@ -163,6 +166,7 @@ impl PartJob<'_> {
             sphere: made.deformed.sphere,
             features: made.deformed.features,
             crosses: made.crosses,
+            filling,
             area,
             report,
         })

@@ -80,6 +80,14 @@ impl Closing {
         self.closed.n_capped + self.closed.n_doubled == 0
     }
 
+    /// The triangles that fill borders for good.
+    pub fn filling(&self) -> Vec<[DVec3; 3]> {
+        let Closed { mesh, is_real, .. } = &self.closed;
+        let more = mesh.face_ids().skip(self.open.n_faces());
+        let filling = more.filter(|&face| is_real[face] && self.closed.n_filled > 0);
+        filling.map(|face| mesh.triangle(face)).collect()
+    }
+
     /// The part, closed; all of it.
     pub fn into_mesh(self) -> TriangleMesh {
         self.closed.mesh
