@@ -23,9 +23,11 @@ _CLEANED = (
     ("n_duplicates", ("face that is there twice", "faces that are there twice")),
     ("n_doubled", ("triangle back to back with another", "triangles back to back with others")),
 )
+# The only ones that leave a part for its borders are those that are the same for all shapes.
+_CLOSED_ALONE = ", which this primitive cannot have: choose Automatic, or fill all borders"
 #: What parts are that were left, by the kind of reason.
 OF_MANY = {
-    "border": "with holes (open edges)",
+    "border": f"with holes (open edges){_CLOSED_ALONE}",
     "handles": "with a hole through it like a ring or cup handle",
     "shared-edges": "with edges at which 3 or more faces meet",
     "one-sided": "whose inside and outside cannot be told apart (like a Moebius strip)",
@@ -75,7 +77,7 @@ def reason(reason: dict[str, Any]) -> str:
     if kind in _OF_ONE:
         return _OF_ONE[kind]
     if kind == "border":
-        return f"has {count(reason['n_loops'], 'hole')} (open edges)"
+        return f"has {count(reason['n_loops'], 'hole')} (open edges){_CLOSED_ALONE}"
     if kind == "handles":
         through = "a hole" if reason["genus"] == 1 else f"{reason['genus']:,} holes"
         return f"has {through} through it like a ring or cup handle"
@@ -165,7 +167,8 @@ def exceptions(report: dict[str, Any]) -> list[str]:
     """In words what else is otherwise than was asked for."""
     lost = ", ".join(sorted(set(report["lost"])))
     told = [_without_marks(report), f"not carried over: {lost}" if lost else ""]
-    told += [_cleaned(report), _welded(report), _shown(report), *_modifiers(report)]
+    told += [_cleaned(report), _welded(report), _filled(report), _shown(report)]
+    told += _modifiers(report)
     return [each for each in told if each]
 
 
@@ -186,6 +189,13 @@ def _welded(report: dict[str, Any]) -> str:
     """How many vertices of seams were welded."""
     n = report["clean"]["n_seam_welded"]
     return f"{count(n, 'vertex', 'vertices')} of seams welded" if n else ""
+
+
+def _filled(report: dict[str, Any]) -> str:
+    """How many borders were filled."""
+    opened = [part["opened"] for part in report["parts"] if part["opened"]]
+    n = sum(each["n_filled"] for each in opened)
+    return f"{count(n, 'border')} filled" if n else ""
 
 
 def _modifiers(report: dict[str, Any]) -> list[str]:
