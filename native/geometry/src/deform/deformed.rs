@@ -67,9 +67,7 @@ impl Deformed {
             });
         }
         let named = |v: VertexId| names[v.index()];
-        let faces = faces
-            .iter()
-            .map(|face| face.iter().filter_map(|&v| named(v)).collect());
+        let faces = faces.iter().map(|face| face.iter().filter_map(|&v| named(v)).collect());
         let faces: Vec<Vec<u32>> = faces.collect();
         let edges = |edges: &[[VertexId; 2]]| -> Vec<[VertexId; 2]> {
             let both = |[a, b]: &[VertexId; 2]| Some([VertexId(named(*a)?), VertexId(named(*b)?)]);

@@ -75,9 +75,7 @@ pub(super) fn dress(
     };
     let part = progress.part("", 0.0, 0.5);
     let mut field = field::orient_along(mesh, (&pull, &along), &part)?;
-    let corners = network
-        .as_ref()
-        .filter(|_| settings.creases == Creases::Long);
+    let corners = network.as_ref().filter(|_| settings.creases == Creases::Long);
     let mirror = |field: &mut OrientationField| {
         if let Some(doubled) = guides.mirror {
             straighten(field, doubled, (sizes, corners));
@@ -113,9 +111,7 @@ pub(super) fn dress(
     } else {
         let kept = kept.into_iter().filter(|kept| kept.iter().any(|&is| is));
         let lines = kept.map(|kept| lines_of((mesh, &field), (&plane(kept), firm.as_ref()), h));
-        let none = held
-            .as_ref()
-            .map(|held| lines_of((mesh, &field), (held, firm.as_ref()), h));
+        let none = held.as_ref().map(|held| lines_of((mesh, &field), (held, firm.as_ref()), h));
         lines.chain([none.unwrap_or_default()]).map(plan).collect()
     };
     Ok(Dressed {

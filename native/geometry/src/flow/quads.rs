@@ -268,9 +268,7 @@ fn search(
 /// How many lines of a plan have to be met and are not.
 fn unmet(plan: &Plan, laid: &Laid) -> usize {
     let lines = plan.lines().zip(&laid.is_met);
-    lines
-        .filter(|(line, is_met)| line.is_firm && !**is_met)
-        .count()
+    lines.filter(|(line, is_met)| line.is_firm && !**is_met).count()
 }
 
 /// The grid of whole periods, with the ends of lines among its vertices.

@@ -186,7 +186,9 @@ fn symmetric(
                 sheet.doubled((&ground.even, border), ground.target, &part)
             }
             (Symmetry::OtherSide(_), None) => Ok(Err("it has no borders".to_owned())),
-            (Symmetry::Plane(axis), _) => mirror::symmetric((&ground.even, lines), axis, &part),
+            (Symmetry::Plane(axis), _) => {
+                mirror::symmetric((&ground.even, lines), axis, &part)
+            }
         })
     })?;
     let mut symmetric = None;
@@ -220,7 +222,11 @@ fn symmetric(
 
 impl Ground<'_> {
     /// Takes an even surface that is its own image in place of the usual one, which it returns.
-    fn doubled(&mut self, even: SphereMap, doubled: Doubled) -> Wearing {
+    fn doubled(
+        &mut self,
+        even: SphereMap,
+        doubled: Doubled,
+    ) -> Wearing {
         let carried = |lines| doubled.carried(self.even.mesh(), lines);
         let (lines, marked) = (carried(&self.lines), carried(&self.marked));
         let border = self.border.as_ref().map(carried);

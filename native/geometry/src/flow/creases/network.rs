@@ -140,11 +140,10 @@ impl<'a> Network<'a> {
         };
         let lies_free = |v: VertexId| self.indices[v].is_none() && !self.is_in_plane(v);
         let near = |v: &VertexId| depths[*v] < ASIDE * edge(*v);
-        let own = self
-            .mesh
-            .vertex_ids()
-            .filter(|&v| self.is_own(v) && lies_free(v));
-        let close: Vec<VertexId> = own.filter(|v| field.indices[*v] != 0 && near(v)).collect();
+        let own = self.mesh.vertex_ids().filter(|&v| self.is_own(v) && lies_free(v));
+        let close: Vec<VertexId> = own
+            .filter(|v| field.indices[*v] != 0 && near(v))
+            .collect();
         for v in close {
             let patch = self.patch(v);
             let is_free = |u: VertexId| {
