@@ -319,6 +319,7 @@ fn every_broken_file_ends_with_a_result_or_with_words() {
         "huge_scale",
         "inside_out",
         "isolated_vertex",
+        "missing_face",
         "negative_indices",
         "self_intersecting",
         "tiny_scale",
