@@ -56,9 +56,8 @@ def test_no_error_stops_the_others(
     ("prefix", "primitive", "text"),
     [
         ("05", "QUAD_SPHERE", "the quad-sphere primitive has no borders; choose flow"),
-        ("06", "AUTO", "genus 1"),
+        ("06", "QUAD_SPHERE", "genus 1: the quad-sphere primitive has no handles; choose flow"),
         ("07", "AUTO", "the mesh has no faces (0 vertices)"),
-        ("10", "AUTO", "3 faces meet at the edge between vertices 0 and 1; at most 2 can"),
     ],
 )
 def test_what_cannot_be_done_is_said_and_left_alone(
@@ -72,6 +71,14 @@ def test_what_cannot_be_done_is_said_and_left_alone(
     told = refused(thing, primitive=primitive)
     assert text in told
     assert str(caught.value) in told
+
+
+def test_a_fin_stays_and_what_it_stands_on_is_done(open_fixture: Open) -> None:
+    thing = open_fixture("10")
+    assert press.orbflow_remesh(faces=60) == {"FINISHED"}
+    told = addon("words").exceptions(addon("runs").last_report(thing.name))
+    assert told == ["taken apart at 1 edge at which 3 or more faces meet into 2 sheets"]
+    assert [len(face.vertices) for face in thing.data.polygons].count(3) == 1
 
 
 def test_coordinates_that_are_not_numbers_are_named(open_fixture: Open) -> None:

@@ -55,6 +55,7 @@ pub mod pair;
 pub mod pipeline;
 pub mod progress;
 pub mod random;
+pub mod rejoin;
 pub mod score;
 pub mod sparse;
 pub mod sphere;

@@ -4,7 +4,7 @@ mod common;
 
 use common as shapes;
 use glam::DVec3;
-use orbflow_geometry::clean::{Cleaned, clean};
+use orbflow_geometry::clean::{Cleaned, Error, clean, take_apart};
 use orbflow_geometry::measure;
 use orbflow_geometry::mesh::{Id, PolygonMesh, TriangleMesh};
 use orbflow_geometry::progress::Progress;
@@ -209,6 +209,10 @@ proptest! {
         let mesh = PolygonMesh::from_faces(positions, &faces).unwrap();
         if let Ok(cleaned) = clean(&mesh, &Progress::none()) {
             prop_assert!(cleaned.mesh.check().is_ok());
+        }
+        match take_apart(&mesh, Some(1e-5), &Progress::none()) {
+            Ok(apart) => prop_assert!(apart.mesh.check().is_ok()),
+            Err(error) => prop_assert!(matches!(error, Error::NoArea { .. }), "{error}"),
         }
     }
 }

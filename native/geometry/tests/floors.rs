@@ -11,8 +11,8 @@ const FLOORS: [&[&str]; 5] = [
     &["groups", "mesh", "random", "sparse"],
     &["hierarchy", "measure", "mirror", "nearest", "sphere_map"],
     &[
-        "clean", "close", "decimate", "deform", "embed", "flow", "pair", "score", "sphere",
-        "transfer",
+        "clean", "close", "decimate", "deform", "embed", "flow", "pair", "rejoin", "score",
+        "sphere", "transfer",
     ],
     &["pipeline"],
 ];

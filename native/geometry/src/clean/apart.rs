@@ -1,10 +1,14 @@
 //! Takes a mesh apart: the parts that are surfaces, and those that are none.
 
+use std::collections::HashSet;
+
 use glam::DVec3;
 
-use super::edges::{Edges, Twins};
+use super::edges::Twins;
 use super::mend::Soup;
 use super::pairs::Pairing;
+use super::sheets::{self, Parted, SharedLine, Sorted, Turned};
+use super::triangulate::Triangulated;
 use super::{Error, Report, compact, fans, orient};
 use crate::groups::Groups;
 use crate::mesh::{FaceId, FaceMap, HalfedgeId, Id, TriangleMesh, VertexId, VertexMap};
@@ -20,7 +24,9 @@ pub struct Apart {
     /// The input's vertex that each of its vertices was; of the centre of a polygon, one of its
     /// corners.
     pub origin: VertexMap<VertexId>,
-    /// The parts that are none, in the order of their first faces.
+    /// The lines of edges of more than two faces, at which sheets were parted.
+    pub shared: Vec<SharedLine>,
+    /// The parts that are no surfaces, in the order of their first faces.
     pub tangles: Vec<Tangle>,
     /// The input's positions with seams closed, where there were any to close.
     pub moved: Option<Vec<DVec3>>,
@@ -28,120 +34,138 @@ pub struct Apart {
     pub report: Report,
 }
 
-/// A part that is no manifold surface. Vertices and faces are the input's.
-#[derive(Clone, PartialEq, Debug, Default)]
+/// A part that is no manifold surface, because it has one side only. Vertices and faces are the
+/// input's.
+#[derive(Clone, PartialEq, Debug)]
 pub struct Tangle {
     /// Its faces, in order.
     pub faces: Vec<FaceId>,
-    /// Its edges of more than two faces.
-    pub shared: Vec<SharedEdge>,
     /// Its edges of one face.
     pub border: Vec<[VertexId; 2]>,
-    /// An edge where faces disagree whichever way they are turned, if there is one.
-    pub one_sided: Option<[VertexId; 2]>,
-}
-
-/// An edge of more than two faces.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub struct SharedEdge {
-    /// How many faces meet.
-    pub n_faces: usize,
-    /// The ends, the smaller first.
-    pub ends: [VertexId; 2],
+    /// An edge where faces disagree whichever way they are turned.
+    pub one_sided: [VertexId; 2],
 }
 
 impl Apart {
-    /// Whether an edge has but one face.
+    /// Whether an edge of the input has but one face.
     pub fn is_open(&self) -> bool {
-        !self.mesh.is_closed() || self.tangles.iter().any(|tangle| !tangle.border.is_empty())
+        let mut tangles = self.tangles.iter();
+        tangles.any(|tangle| !tangle.border.is_empty())
+            || !self.mesh.is_closed() && !self.border().is_empty()
+    }
+
+    /// The input's edges of one face that are not in tangles. Borders of sheets along shared lines
+    /// are none.
+    pub(super) fn border(&self) -> Vec<[VertexId; 2]> {
+        let shared: HashSet<_> = self.shared.iter().flat_map(SharedLine::edges).collect();
+        let mesh = &self.mesh;
+        let is_border = |h: &HalfedgeId| mesh.twin(*h).is_none();
+        let ends = |h| [mesh.origin(h), mesh.target(h)].map(|v| self.origin[v]);
+        let is_own = |&[a, b]: &[VertexId; 2]| {
+            // Halves of an edge that was cut lie on a line, too.
+            shared.is_empty() || a != b && !shared.contains(&[a.min(b), a.max(b)])
+        };
+        let edges = mesh.halfedge_ids().filter(is_border).map(ends);
+        edges.filter(is_own).collect()
     }
 }
 
-/// Sorts triangles into surfaces and tangles; the faces of each surface are turned to agree, and
-/// fans that meet in a vertex get one each.
+/// Sorts triangles into surfaces and tangles; surfaces that share edges are parted into sheets, the
+/// faces of each are turned to agree, and fans that meet in a vertex get one each.
 pub(super) fn sort(
     mut soup: Soup,
     mut report: Report,
     progress: &Progress,
 ) -> Result<Apart, Error> {
-    let Pairing { mut twins, shared } = Pairing::new(&soup.edges, &soup.triangulated);
+    let pairing = Pairing::new(&soup.edges, &soup.triangulated);
+    let mut parted = sheets::part(&soup, pairing);
     progress.at(0.8)?;
     let mut faces = soup.triangulated.faces.clone();
-    let one_sided = orient::agree(&mut faces, &mut twins);
+    let one_sided = orient::agree(&mut faces, &mut parted.twins);
     progress.at(0.85)?;
-    let (mut tangles, is_sound) = tangles(&soup, &twins, &shared, &one_sided);
-    let old = std::mem::replace(&mut soup.triangulated.faces, faces);
-    let turned = old.iter().zip(&soup.triangulated.faces).zip(&is_sound);
-    report.n_reoriented = turned.filter(|((a, b), sound)| a != b && **sound).count();
+    let (tangles, is_sound) = tangles(&soup, &parted.twins, &one_sided);
+    let before = std::mem::replace(&mut soup.triangulated.faces, faces);
+    let pairs = before.iter().zip(&soup.triangulated.faces);
+    let is_reversed: Vec<bool> = pairs.map(|(a, b)| a != b).collect();
+    let turned = is_reversed.iter().zip(&is_sound);
+    report.n_reoriented = turned.filter(|(turned, sound)| **turned && **sound).count();
     if !tangles.is_empty() {
-        twins.keep(&is_sound);
+        parted.twins.keep(&is_sound);
         soup.triangulated.keep(&is_sound);
     }
     progress.at(0.9)?;
-    let split = &mut soup.triangulated;
-    report.n_split = fans::split(split, &twins);
-    // Solids that touch along an edge between two others have one fan at each of its ends.
-    soup.edges = Edges::new(&soup.triangulated.faces);
-    let shared = soup.edges.runs().filter(|run| run.len() > 2);
-    let shared: Vec<_> = shared.map(<[HalfedgeId]>::to_vec).collect();
-    let (more, is_sound) = self::tangles(&soup, &twins, &shared, &[]);
-    if !more.is_empty() {
-        soup.triangulated.keep(&is_sound);
-        tangles.extend(more);
-        tangles.sort_by_key(|tangle| tangle.faces[0]);
-    }
-    let triangulated = soup.triangulated;
-    let compacted = compact(&triangulated.positions, triangulated.faces);
+    report.n_split = fans::split(&mut soup.triangulated, &parted.twins);
+    let turned = Turned {
+        before,
+        is_reversed,
+        is_sound,
+    };
+    let (mut apart, shared) = built(soup.triangulated, &parted, &turned, progress)?;
+    report.n_shared_edges = shared.iter().map(|line| line.edges().count()).sum();
+    report.n_sheets = sheets::count(&shared);
+    (apart.shared, apart.tangles, apart.report) = (shared, tangles, report);
+    Ok(apart)
+}
+
+/// A mesh of triangles that agree, and the lines that its sheets share.
+fn built(
+    mut triangulated: Triangulated,
+    parted: &Parted,
+    turned: &Turned,
+    progress: &Progress,
+) -> Result<(Apart, Vec<SharedLine>), Error> {
+    let middles = parted
+        .is_crowded
+        .then(|| sheets::split_at_middles(&mut triangulated, &parted.twins));
+    let compacted = compact(
+        &triangulated.positions,
+        std::mem::take(&mut triangulated.faces),
+    );
     let origin = compacted.was.iter();
     let origin = origin.map(|v| triangulated.origins[v.index()]).collect();
     progress.at(0.95)?;
-    Ok(Apart {
-        mesh: TriangleMesh::build(compacted.positions, compacted.faces, progress)??,
+    let mesh = TriangleMesh::build(compacted.positions, compacted.faces, progress)??;
+    let shared = middles.map_or_else(Vec::new, |middles| {
+        let sorted = Sorted::new((turned, &middles), &compacted.was, &mesh);
+        sheets::told(&parted.lines, &triangulated, &sorted)
+    });
+    let apart = Apart {
+        mesh,
         source: FaceMap::from_vec(triangulated.source),
         origin,
-        tangles,
+        shared: Vec::new(),
+        tangles: Vec::new(),
         moved: None,
-        report,
-    })
+        report: Report::default(),
+    };
+    Ok((apart, shared))
 }
 
-/// The parts with edges that more than two faces share or with one side only, and which triangles
-/// are in none of them.
-fn tangles(
-    soup: &Soup,
-    twins: &Twins,
-    shared: &[Vec<HalfedgeId>],
-    one_sided: &[HalfedgeId],
-) -> (Vec<Tangle>, Vec<bool>) {
+/// The parts with one side only, and which triangles are in none of them.
+fn tangles(soup: &Soup, twins: &Twins, one_sided: &[HalfedgeId]) -> (Vec<Tangle>, Vec<bool>) {
     let n = soup.triangulated.faces.len();
-    if shared.is_empty() && one_sided.is_empty() {
+    if one_sided.is_empty() {
         return (Vec::new(), vec![true; n]);
     }
-    let (group, n_groups) = groups(n, twins, shared);
+    let (group, n_groups) = groups(n, twins);
     let of = |h: HalfedgeId| group[h.face().index()] as usize;
     let mut place: Vec<Option<usize>> = vec![None; n_groups];
-    let first = shared
-        .iter()
-        .map(|run| run[0])
-        .chain(one_sided.iter().copied());
-    let mut hit: Vec<usize> = first.map(of).collect();
-    hit.sort_unstable();
-    hit.dedup();
-    for (i, &group) in hit.iter().enumerate() {
-        place[group] = Some(i);
+    let mut tangles = Vec::new();
+    let mut hit: Vec<HalfedgeId> = one_sided.to_vec();
+    hit.sort_by_key(|&h| of(h));
+    for h in hit {
+        place[of(h)].get_or_insert_with(|| {
+            tangles.push(Tangle {
+                faces: Vec::new(),
+                border: Vec::new(),
+                one_sided: soup.ends(h),
+            });
+            tangles.len() - 1
+        });
     }
-    let mut tangles = vec![Tangle::default(); hit.len()];
     for (i, &group) in group.iter().enumerate() {
         if let Some(place) = place[group as usize] {
             tangles[place].push(soup.triangulated.source[i]);
-        }
-    }
-    for run in shared {
-        if let Some(place) = place[of(run[0])] {
-            tangles[place].shared.push(SharedEdge {
-                n_faces: run.len(),
-                ends: soup.ends(run[0]),
-            });
         }
     }
     for run in soup.edges.runs().filter(|run| run.len() == 1) {
@@ -149,25 +173,17 @@ fn tangles(
             tangles[place].border.push(soup.ends(run[0]));
         }
     }
-    for &h in one_sided {
-        if let Some(place) = place[of(h)] {
-            tangles[place].one_sided.get_or_insert(soup.ends(h));
-        }
-    }
     let is_sound = group.iter().map(|&g| place[g as usize].is_none());
     (tangles, is_sound.collect())
 }
 
-/// The group of each triangle, linked over edges of any number of faces, and how many there are.
-fn groups(n: usize, twins: &Twins, shared: &[Vec<HalfedgeId>]) -> (Vec<u32>, usize) {
+/// The group of each triangle, linked over edges, and how many there are.
+fn groups(n: usize, twins: &Twins) -> (Vec<u32>, usize) {
     let mut groups = Groups::new(n);
     for h in (0..3 * n).map(HalfedgeId::from_index) {
         if let Some(twin) = twins.of(h) {
             groups.link(h.face().index(), twin.face().index());
         }
-    }
-    for pair in shared.iter().flat_map(|run| run.windows(2)) {
-        groups.link(pair[0].face().index(), pair[1].face().index());
     }
     groups.numbered()
 }

@@ -91,6 +91,13 @@ impl Twins {
         self.0[h.index()] = g.0;
     }
 
+    /// Makes two twins borders.
+    pub(super) fn part(&mut self, pair: [HalfedgeId; 2]) {
+        for h in pair {
+            self.0[h.index()] = NONE;
+        }
+    }
+
     /// Those of some of the triangles only; a triangle is kept with its neighbours or goes with them.
     pub(super) fn keep(&mut self, is_kept: &[bool]) {
         let mut n = 0;

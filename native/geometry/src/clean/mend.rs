@@ -75,8 +75,7 @@ impl Soup {
 
     /// The ends of an edge, as the input names them, the smaller first.
     pub(super) fn ends(&self, h: HalfedgeId) -> [VertexId; 2] {
-        let face = self.triangulated.faces[h.face().index()];
-        let ends = [face[h.corner()], face[h.next().corner()]];
+        let ends = self.triangulated.ends(h);
         let [a, b] = ends.map(|v| self.triangulated.origins[v.index()]);
         [a.min(b), a.max(b)]
     }

@@ -8,9 +8,11 @@
 //! Welding can bring together what only touches, such as the edges of two boxes side by side.
 //! Where an edge has more than two faces after welding, what hangs together there is welded anew,
 //! only at vertices on the border of the mesh as given: enough to close a soup of triangles, too
-//! little to glue closed parts. Solids that share an edge even so part at it (`pairs`). A part with
-//! any other edge of more than two faces is a tangle; [`take_apart`] sets it apart, [`clean`]
-//! refuses the mesh. Borders that lie on each other within a distance are welded too (`seam`).
+//! little to glue closed parts. Solids that share an edge even so part at it (`pairs`). At any other
+//! edge of more than two faces surfaces are parted into sheets with borders (`sheets`); [`take_apart`]
+//! says along which lines they meet, [`clean`] refuses the mesh. A part with one side only is a
+//! tangle, set apart or refused. Borders that lie on each other within a distance are welded too
+//! (`seam`).
 //!
 //! Not done: holes stay open, parts that cross stay crossed, an inside-out part stays so.
 
@@ -24,6 +26,7 @@ mod polygons;
 mod report;
 mod scale;
 mod seam;
+mod sheets;
 mod triangulate;
 mod weld;
 
@@ -35,11 +38,12 @@ use crate::mesh::{
     VertexMap,
 };
 use crate::progress::{Cancelled, Progress};
-pub use apart::{Apart, SharedEdge, Tangle};
+pub use apart::{Apart, Tangle};
 use mend::Soup;
 use polygons::Polygons;
 pub use report::Report;
 pub use seam::{WELD, distance};
+pub use sheets::{SharedLine, Strand};
 use triangulate::Triangulated;
 use weld::Reach;
 
@@ -136,13 +140,12 @@ pub fn clean(input: &PolygonMesh, progress: &Progress) -> Result<Cleaned, Error>
     let Apart {
         mesh,
         source,
+        shared,
         tangles,
         mut report,
         ..
     } = take_apart(input, None, progress)?;
-    if let Some(error) = tangles.first().and_then(Tangle::error) {
-        return Err(error);
-    }
+    refuse(&shared, &tangles)?;
     let is_left = not_doubled(&mesh);
     report.n_doubled = is_left.iter().filter(|&&is_left| !is_left).count();
     if report.n_doubled == is_left.len() || mesh.n_vertices() < 4 {
@@ -274,6 +277,7 @@ fn already_solid(
         mesh,
         source: FaceMap::from_vec(triangulated.source.clone()),
         origin,
+        shared: Vec::new(),
         tangles: Vec::new(),
         moved: None,
         report,
@@ -342,19 +346,20 @@ fn count_vertices(names: &[VertexId], polygons: &Polygons, report: &mut Report) 
     }
 }
 
-impl Tangle {
-    /// What is wrong first.
-    fn error(&self) -> Option<Error> {
-        let shared = self.shared.first().map(|edge| Error::NonManifoldEdge {
-            n_faces: edge.n_faces,
-            a: edge.ends[0],
-            b: edge.ends[1],
-        });
-        let one_sided = || {
-            let [a, b] = self.one_sided?;
-            Some(Error::NotOrientable { a, b })
-        };
-        shared.or_else(one_sided)
+/// Refuses sheets that meet, which as one mesh would come apart, and tangles.
+fn refuse(shared: &[SharedLine], tangles: &[Tangle]) -> Result<(), Error> {
+    let edges = shared
+        .iter()
+        .flat_map(|line| line.edges().map(|ends| (ends, line.n_faces)));
+    if let Some(([a, b], n_faces)) = edges.min() {
+        return Err(Error::NonManifoldEdge { n_faces, a, b });
+    }
+    match tangles {
+        [] => Ok(()),
+        [first, ..] => {
+            let [a, b] = first.one_sided;
+            Err(Error::NotOrientable { a, b })
+        }
     }
 }
 

@@ -3,8 +3,8 @@
 //! At an edge of two faces there is no choice. At an edge of more, solids touch: around it their
 //! sides alternate, one that turns its inside to the next and one that turns it to the one before.
 //! Each solid's two sides belong together; what lies between two solids is outside. Where the
-//! sides do not alternate nothing is paired: a wall inside a solid, for one, belongs to no side.
-//! Solids that are inside out go on into each other instead, and stay a tangle.
+//! sides do not alternate nothing is paired here: a wall inside a solid, for one, belongs to no side.
+//! What is left so is for `sheets` to part.
 
 use glam::DVec3;
 
@@ -20,6 +20,8 @@ const SAME: f64 = 1e-9;
 /// The pairs of all edges.
 pub(super) struct Pairing {
     pub(super) twins: Twins,
+    /// The pairs at each edge where solids touch.
+    pub(super) touching: Vec<Vec<[HalfedgeId; 2]>>,
     /// The halfedges of each edge of more than two faces that could not be paired.
     pub(super) shared: Vec<Vec<HalfedgeId>>,
 }
@@ -27,18 +29,27 @@ pub(super) struct Pairing {
 impl Pairing {
     pub(super) fn new(edges: &Edges, triangulated: &Triangulated) -> Self {
         let mut twins = Twins::none(3 * triangulated.faces.len());
-        let mut shared = Vec::new();
+        let (mut touching, mut shared) = (Vec::new(), Vec::new());
         for run in edges.runs() {
             match *run {
                 [_] => {}
                 [g, h] => twins.link(g, h),
                 _ => match solids(run, triangulated) {
-                    Some(pairs) => pairs.into_iter().for_each(|[g, h]| twins.link(g, h)),
+                    Some(pairs) => {
+                        for &[g, h] in &pairs {
+                            twins.link(g, h);
+                        }
+                        touching.push(pairs);
+                    }
                     None => shared.push(run.to_vec()),
                 },
             }
         }
-        Self { twins, shared }
+        Self {
+            twins,
+            touching,
+            shared,
+        }
     }
 }
 

@@ -27,6 +27,10 @@ pub struct Report {
     pub n_reoriented: usize,
     /// Vertices added where several fans of faces met at one.
     pub n_split: usize,
+    /// Edges of more than two faces at which surfaces were parted into sheets.
+    pub n_shared_edges: usize,
+    /// The sheets that meet there.
+    pub n_sheets: usize,
 }
 
 impl Report {
@@ -87,6 +91,24 @@ impl Report {
         .into_iter()
         .filter(|(n, _, _)| *n > 0)
         .map(|(n, one, many)| format!("{n} {}", if n == 1 { one } else { many }));
-        seams.into_iter().chain(counted).collect()
+        seams
+            .into_iter()
+            .chain(counted)
+            .chain(self.parted())
+            .collect()
     }
+
+    /// What was parted into sheets.
+    fn parted(&self) -> Option<String> {
+        let edges = counted(self.n_shared_edges, "edge");
+        let sheets = counted(self.n_sheets, "sheet");
+        let told = || format!("{edges} of three or more faces parted into {sheets}");
+        (self.n_shared_edges > 0).then(told)
+    }
+}
+
+/// A number of things.
+fn counted(n: usize, what: &str) -> String {
+    let ending = if n == 1 { "" } else { "s" };
+    format!("{n} {what}{ending}")
 }

@@ -15,7 +15,7 @@ use super::Apart;
 use super::scale::Scale;
 use super::weld::bits;
 use crate::groups::Groups;
-use crate::mesh::{FaceId, HalfedgeId, Id, PolygonMesh, VertexId, bounds};
+use crate::mesh::{FaceId, Id, PolygonMesh, VertexId, bounds};
 use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
 
@@ -101,12 +101,9 @@ struct Pair {
 
 impl Borders {
     fn new(input: &PolygonMesh, apart: &Apart, scale: Scale) -> Self {
-        let (mesh, origin) = (&apart.mesh, &apart.origin);
-        let is_border = |h: &HalfedgeId| mesh.twin(*h).is_none();
-        let ends = |h| [mesh.origin(h), mesh.target(h)].map(|v| origin[v]);
-        let edges = mesh.halfedge_ids().filter(is_border).map(ends);
         let tangled = apart.tangles.iter().flat_map(|tangle| &tangle.border);
-        let edges: Vec<_> = edges.chain(tangled.copied()).collect();
+        let mut edges = apart.border();
+        edges.extend(tangled);
         let mut names = HashMap::new();
         let mut points = Vec::new();
         for v in edges.iter().flatten() {

@@ -8,7 +8,7 @@ use super::edges::Edges;
 use super::polygons::Polygons;
 use super::scale::Scale;
 use crate::measure::clip_ears;
-use crate::mesh::{FaceId, Id, PolygonMesh, VertexId};
+use crate::mesh::{FaceId, HalfedgeId, Id, PolygonMesh, VertexId};
 
 /// A diagonal must be shorter than the other by more than this share to be taken instead: the
 /// diagonals of a square that was turned in space differ by rounding alone.
@@ -82,6 +82,17 @@ impl Triangulated {
         self.scale.point(self.positions[vertex.index()])
     }
 
+    /// Where a side of a triangle starts and ends.
+    pub(super) fn ends(&self, h: HalfedgeId) -> [VertexId; 2] {
+        let face = self.faces[h.face().index()];
+        [face[h.corner()], face[h.next().corner()]]
+    }
+
+    /// The polygon that a triangle is a piece of.
+    pub(super) fn polygon_of(&self, face: FaceId) -> u32 {
+        self.polygon[face.index()]
+    }
+
     pub(super) fn is_face_flat(&self, face: FaceId) -> bool {
         self.is_flat(self.faces[face.index()])
     }
@@ -95,6 +106,21 @@ impl Triangulated {
         self.source.retain(|_| kept.next() == Some(true));
         let mut kept = flags();
         self.polygon.retain(|_| kept.next() == Some(true));
+    }
+
+    /// A vertex more, which messages call by another.
+    pub(super) fn add(&mut self, position: DVec3, like: VertexId) -> VertexId {
+        let vertex = VertexId::from_index(self.positions.len());
+        self.positions.push(position);
+        self.origins.push(self.origins[like.index()]);
+        vertex
+    }
+
+    /// Replaces all triangles by pieces of them, each with the triangle that it is a piece of.
+    pub(super) fn replace(&mut self, pieces: &[(FaceId, [VertexId; 3])]) {
+        self.faces = pieces.iter().map(|(_, piece)| *piece).collect();
+        let of = |f: &FaceId| (self.source[f.index()], self.polygon[f.index()]);
+        (self.source, self.polygon) = pieces.iter().map(|(face, _)| of(face)).unzip();
     }
 
     fn cut(&mut self, polygon: &[VertexId], way: Way) {

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::sheet::Sheet;
 use super::{Deformed, Error, Report, separate, untangle};
-use crate::mesh::{Id, PolygonMesh, VertexId};
+use crate::mesh::{Id, PolygonMesh, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
 use crate::sphere_map::check_cover;
 
@@ -67,7 +67,9 @@ impl Deformed {
             });
         }
         let named = |v: VertexId| names[v.index()];
-        let faces = faces.iter().map(|face| face.iter().filter_map(|&v| named(v)).collect());
+        let faces = faces
+            .iter()
+            .map(|face| face.iter().filter_map(|&v| named(v)).collect());
         let faces: Vec<Vec<u32>> = faces.collect();
         let edges = |edges: &[[VertexId; 2]]| -> Vec<[VertexId; 2]> {
             let both = |[a, b]: &[VertexId; 2]| Some([VertexId(named(*a)?), VertexId(named(*b)?)]);
@@ -92,6 +94,36 @@ impl Deformed {
             mesh,
             report,
         })
+    }
+
+    /// The same with some vertices joined: another mesh of the same faces, and what became of each
+    /// vertex. What is inverted is counted anew.
+    ///
+    /// # Panics
+    /// When the mesh does not have these vertices.
+    #[must_use]
+    pub fn renamed(self, mesh: PolygonMesh, names: &VertexMap<VertexId>) -> Self {
+        let mut sphere = vec![DVec3::ZERO; mesh.n_vertices()];
+        for (&point, &name) in self.sphere.iter().zip(names).rev() {
+            sphere[name.index()] = point;
+        }
+        let edges = |edges: Vec<[VertexId; 2]>| -> Vec<[VertexId; 2]> {
+            let named = edges.into_iter().map(|ends| ends.map(|v| names[v]));
+            let mut edges: Vec<_> = named.map(|[a, b]| [a.min(b), a.max(b)]).collect();
+            edges.sort_unstable();
+            edges.dedup();
+            edges
+        };
+        Self {
+            sphere,
+            features: edges(self.features),
+            led: edges(self.led),
+            report: Report {
+                n_inverted: untangle::n_inverted(&mesh),
+                ..self.report
+            },
+            mesh,
+        }
     }
 
     /// What a sheet has become.

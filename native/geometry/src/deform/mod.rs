@@ -292,7 +292,8 @@ pub fn deform_flow(
         seams.force(&mut forced);
         let mut done = report;
         finish.fit(&mut forced, &mut done)?;
-        let is_sound = || untangle::worse_than(&forced, 0.0).is_empty() && done.n_crossing_left == 0;
+        let is_sound =
+            || untangle::worse_than(&forced, 0.0).is_empty() && done.n_crossing_left == 0;
         if settings.forces_lines || is_sound() {
             done.n_feature_vertices = done.n_feature_goals;
             return Ok(Deformed::new(forced, done));

@@ -4,10 +4,10 @@ use std::f64::consts::PI;
 
 use glam::DVec2;
 
-use super::creases::{self, Line, Network};
+use super::creases::{self, Line, Network, Sharp};
 use super::field::{self, OrientationField};
 use super::mirror::{Plan, plan, plane_edges, straighten};
-use super::quads::{Error, Guides};
+use super::quads::{Error, FirmEdges, Guides};
 use super::settings::{Creases, Settings};
 use super::singularities::tidy;
 use super::wish::wish;
@@ -56,26 +56,30 @@ pub(super) fn dress(
     };
     let all = lines(mesh, guides, (settings.creases, sharp_angle));
     let along = plane(&all);
-    let is_firm = |h| guides.firm.is_some_and(|firm| firm[h]);
+    let is_firm = |h| guides.firm.is_some_and(|firm| firm.is_on[h]);
     let sharp: HalfedgeMap<bool> = mesh
         .halfedge_ids()
         .map(|h| all[h] && !guides.marked[h] && !is_firm(h))
         .collect();
     let firm = match settings.creases {
         Creases::All => Some(all.clone()),
-        Creases::Long => guides.firm.cloned(),
+        Creases::Long => guides.firm.map(|firm| firm.is_on.clone()),
     };
     let held = firm.as_ref().map(plane);
+    let known = guides.firm;
+    let sharp_of = |edges| Sharp { edges, firm: known };
     let network = match (&firm, &held) {
         (Some(firm), Some(held)) if firm.iter().any(|&is_firm| is_firm) => {
-            Some(Network::new(mesh, held, guides.mirror).ok_or(Error::NoSolid)?)
+            Some(Network::new(mesh, sharp_of(held), guides.mirror).ok_or(Error::NoSolid)?)
         }
         (Some(_), _) if settings.creases == Creases::All => return Err(Error::NoSolid),
         _ => None,
     };
     let part = progress.part("", 0.0, 0.5);
     let mut field = field::orient_along(mesh, (&pull, &along), &part)?;
-    let corners = network.as_ref().filter(|_| settings.creases == Creases::Long);
+    let corners = network
+        .as_ref()
+        .filter(|_| settings.creases == Creases::Long);
     let mirror = |field: &mut OrientationField| {
         if let Some(doubled) = guides.mirror {
             straighten(field, doubled, (sizes, corners));
@@ -85,14 +89,14 @@ pub(super) fn dress(
     tidy(mesh, &mut field, sizes);
     mirror(&mut field);
     let h = (total_area(mesh) / settings.n_quads.max(1) as f64).sqrt();
-    let lines = creases::lines(mesh, &field, &along, h).into_iter();
+    let lines = creases::lines(mesh, &field, sharp_of(&along), h).into_iter();
     let on_lines = lines.map(|line| line.length_of(mesh, |h| sharp[*h])).sum();
     let mut kept = vec![guides.marked];
     if creases::are_clear(mesh, &sharp, on_lines) {
         kept.insert(0, &all);
     }
     if settings.creases == Creases::Long {
-        creases::attract(mesh, &mut field, kept[0], sizes);
+        creases::attract(mesh, &mut field, sharp_of(kept[0]), sizes);
     }
     if let Some(network) = &network {
         network.settle(&mut field);
@@ -107,11 +111,13 @@ pub(super) fn dress(
     let wish = wish(mesh, &field, sizes, &progress.part("", 0.7, 1.0))?;
     let plan = |lines| planned(guides, &field, lines);
     let plans = if settings.creases == Creases::All {
-        vec![plan(creases::whole_lines(mesh, &field, &along, h)).firm()]
+        vec![plan(creases::whole_lines(mesh, &field, sharp_of(&along), h)).firm()]
     } else {
         let kept = kept.into_iter().filter(|kept| kept.iter().any(|&is| is));
-        let lines = kept.map(|kept| lines_of((mesh, &field), (&plane(kept), firm.as_ref()), h));
-        let none = held.as_ref().map(|held| lines_of((mesh, &field), (held, firm.as_ref()), h));
+        let lines = kept.map(|kept| lines_of((mesh, &field), (&plane(kept), known), h));
+        let none = held
+            .as_ref()
+            .map(|held| lines_of((mesh, &field), (held, known), h));
         lines.chain([none.unwrap_or_default()]).map(plan).collect()
     };
     Ok(Dressed {
@@ -137,23 +143,28 @@ fn lines(
 /// Lines along some edges, of which those that have to be met are taken whole.
 fn lines_of(
     (mesh, field): (&TriangleMesh, &OrientationField),
-    (along, firm): (&HalfedgeMap<bool>, Option<&HalfedgeMap<bool>>),
+    (along, firm): (&HalfedgeMap<bool>, Option<&FirmEdges>),
     h: f64,
 ) -> Vec<Line> {
-    let Some(is_firm) = firm else {
-        return creases::lines(mesh, field, along, h);
+    let Some(known) = firm else {
+        let edges = along;
+        return creases::lines(mesh, field, Sharp { edges, firm }, h);
     };
-    let along: HalfedgeMap<bool> = either(along, is_firm);
-    let whole = creases::whole_lines(mesh, field, &along, h);
-    let mut lines = creases::firm_lines(whole, is_firm);
-    lines.extend(creases::lines_beside(&lines, (mesh, field, &along), h));
+    let edges = &either(along, &known.is_on);
+    let sharp = Sharp { edges, firm };
+    let whole = creases::whole_lines(mesh, field, sharp, h);
+    let mut lines = creases::firm_lines(whole, &known.is_on);
+    lines.extend(creases::lines_beside(&lines, (mesh, field, sharp), h));
     lines
 }
 
 /// What to keep to with some lines of sharp edges.
 fn planned(guides: Guides<'_>, field: &OrientationField, beside: Vec<Line>) -> Plan {
     match guides.mirror {
-        Some(doubled) => plan((doubled, guides.firm), field, &beside),
+        Some(doubled) => {
+            let firm = guides.firm.map(|firm| &firm.is_on);
+            plan((doubled, firm), field, &beside)
+        }
         None => Plan {
             plane: Vec::new(),
             beside,

@@ -47,7 +47,11 @@ pub(super) fn lay(
         None => None,
     };
     let is_met = seams.iter().map(Option::is_some).collect();
-    let is_firm = |line: &Line| guides.firm.is_some_and(|firm| firm[line.halfedges[0]]);
+    let is_firm = |line: &Line| {
+        guides
+            .firm
+            .is_some_and(|firm| firm.is_on[line.halfedges[0]])
+    };
     let firm = lines.iter().zip(&seams).filter(|(line, _)| is_firm(line));
     let firm = firm.filter_map(|(_, seam)| seam.as_ref());
     let firm = firm.flat_map(|seam| seam.vertices.windows(2).map(|pair| [pair[0], pair[1]]));

@@ -37,5 +37,5 @@ pub mod strips;
 mod thin;
 pub mod wish;
 
-pub use quads::{Error, Flow, Guides, Report, flow};
+pub use quads::{Error, FirmEdges, Flow, Guides, Report, flow};
 pub use settings::{Creases, Settings};

@@ -19,7 +19,8 @@ use super::thin::n_irregular;
 use super::wish::WishError;
 use crate::measure::Seam;
 use crate::mesh::{
-    FaceMap, HalfedgeMap, PolygonMesh, PolygonMeshError, TriangleMesh, VertexId, VertexMap,
+    FaceMap, HalfedgeId, HalfedgeMap, PolygonMesh, PolygonMeshError, TriangleMesh, VertexId,
+    VertexMap,
 };
 use crate::mirror::Doubled;
 use crate::progress::{Cancelled, Progress};
@@ -33,9 +34,20 @@ pub struct Guides<'a> {
     /// Those of them that somebody marked: they stay lines where sharp edges are not clear.
     pub marked: &'a HalfedgeMap<bool>,
     /// Those of them that have to be met, such as borders: closed lines, or ones that end in others.
-    pub firm: Option<&'a HalfedgeMap<bool>>,
+    pub firm: Option<&'a FirmEdges>,
     /// That the surface is its own image in a plane, and the quads shall be.
     pub mirror: Option<&'a Doubled>,
+}
+
+/// Edges along which quads have to lie.
+#[derive(Clone, PartialEq, Debug)]
+pub struct FirmEdges {
+    /// They, on both sides of each.
+    pub is_on: HalfedgeMap<bool>,
+    /// Where two of them make a corner of quads.
+    pub is_corner: VertexMap<bool>,
+    /// Loops of them, two and two, along which as many quads shall lie.
+    pub twins: Vec<[Vec<HalfedgeId>; 2]>,
 }
 
 /// Quads that flow, not yet laid on the surface.
@@ -236,7 +248,7 @@ fn search(
     let (last, lined) = dressed.plans.split_last().expect("there is a plan");
     let lay_plan = |plan: &Plan, progress: &Progress| {
         let [part, ends] = [(0.0, 0.9), (0.9, 1.0)].map(|(from, to)| progress.part("", from, to));
-        let whole = whole(mesh, worn, plan, settings, &part)?;
+        let whole = whole(mesh, worn, (plan, guides), settings, &part)?;
         lay(map, guides, (whole, plan), &ends)
     };
     let mut from = 0.2;
@@ -268,20 +280,23 @@ fn search(
 /// How many lines of a plan have to be met and are not.
 fn unmet(plan: &Plan, laid: &Laid) -> usize {
     let lines = plan.lines().zip(&laid.is_met);
-    lines.filter(|(line, is_met)| line.is_firm && !**is_met).count()
+    lines
+        .filter(|(line, is_met)| line.is_firm && !**is_met)
+        .count()
 }
 
 /// The grid of whole periods, with the ends of lines among its vertices.
 fn whole(
     mesh: &TriangleMesh,
     (field, wish): (&OrientationField, &HalfedgeMap<DVec2>),
-    plan: &Plan,
+    (plan, guides): (&Plan, Guides<'_>),
     settings: &Settings,
     progress: &Progress,
 ) -> Result<Quantised, Error> {
     let part = progress.part("", 0.0, 0.2);
     let mut complex = flatten(mesh, field, wish.clone(), &plan.paths(), &part)?;
     complex.chains.ties = plan.ties();
+    complex.chains.twins = twins(mesh, plan, guides);
     let mut is_wanted = VertexMap::filled(mesh.n_vertices(), false);
     for &end in plan.lines().flat_map(|line| &line.ends) {
         is_wanted[end] = true;
@@ -301,6 +316,29 @@ fn whole(
     let whole = quantise(complex, settings.n_quads, &search, &part)?;
     check(&whole, (settings, plan.is_firm()))?;
     Ok(whole)
+}
+
+/// The lines of a plan along the loops of each twins.
+fn twins(mesh: &TriangleMesh, plan: &Plan, guides: Guides<'_>) -> Vec<[Vec<usize>; 2]> {
+    let twins = guides.firm.map_or(&[][..], |firm| &firm.twins);
+    let of = |edges: &Vec<HalfedgeId>| {
+        let mut edges = edges.clone();
+        edges.sort_unstable();
+        let lies = |h: HalfedgeId| {
+            let twin = mesh.twin(h);
+            [Some(h), twin]
+                .into_iter()
+                .flatten()
+                .any(|h| edges.binary_search(&h).is_ok())
+        };
+        let lines = plan.lines().enumerate();
+        let lines = lines.filter(|(_, line)| lies(line.halfedges[0]));
+        lines.map(|(i, _)| i).collect::<Vec<_>>()
+    };
+    let twins = twins.iter().map(|two| two.each_ref().map(of));
+    twins
+        .filter(|two| two.iter().all(|lines| !lines.is_empty()))
+        .collect()
 }
 
 fn check(whole: &Quantised, (settings, is_firm): (&Settings, bool)) -> Result<(), Error> {

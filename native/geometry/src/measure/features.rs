@@ -17,7 +17,9 @@ pub struct FeatureLine {
 }
 
 impl FeatureLine {
-    fn new(mesh: &TriangleMesh, vertices: Vec<VertexId>) -> Self {
+    /// The line along some vertices, each joined to the next by an edge; a closed one ends with the
+    /// vertex it starts with.
+    pub fn new(mesh: &TriangleMesh, vertices: Vec<VertexId>) -> Self {
         let points = vertices.iter().map(|&v| mesh.position(v)).collect();
         Self {
             vertices,

@@ -63,6 +63,16 @@ impl Polyline {
         (i, share)
     }
 
+    /// How far a position is from it.
+    pub fn distance(&self, position: DVec3) -> f64 {
+        let from = |[a, b]: [DVec3; 2]| {
+            let way = b - a;
+            let share = (position - a).dot(way) / way.length_squared().max(f64::MIN_POSITIVE);
+            position.distance_squared(a + way * share.clamp(0.0, 1.0))
+        };
+        self.pieces().map(from).fold(f64::INFINITY, f64::min).sqrt()
+    }
+
     /// The arc length of the corner nearest to a position.
     pub fn nearest_corner(&self, position: DVec3) -> f64 {
         let distance = |p: &DVec3| p.distance_squared(position);

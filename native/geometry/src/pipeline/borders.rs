@@ -33,6 +33,13 @@ impl Borders {
     }
 }
 
+/// Why a part cannot be done that has borders, or handles; none where it can.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub(super) struct SphereAlone {
+    pub borders: Option<String>,
+    pub handles: Option<String>,
+}
+
 /// What became of the borders of a part.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize)]
 pub struct Opened {
@@ -55,18 +62,17 @@ pub enum Closure {
 }
 
 impl Opened {
-    /// What is told of a part that was closed.
-    pub(super) fn of(closed: &close::Closed) -> Self {
-        let n_open = closed.n_capped + closed.n_doubled;
-        let way = match closed.n_doubled {
-            0 => Closure::Capped,
-            _ => Closure::Doubled,
+    /// What is told of a part; nothing where it had no borders.
+    pub(super) fn new([n_borders, n_filled]: [usize; 2], is_doubled: bool) -> Option<Self> {
+        let way = match is_doubled {
+            true => Closure::Doubled,
+            false => Closure::Capped,
         };
-        Self {
-            n_borders: n_open + closed.n_filled,
-            n_filled: closed.n_filled,
-            way: (n_open > 0).then_some(way),
-        }
+        (n_borders > 0).then_some(Self {
+            n_borders,
+            n_filled,
+            way: (n_filled < n_borders).then_some(way),
+        })
     }
 }
 
@@ -84,22 +90,22 @@ impl Settings {
         }
     }
 
-    /// Why no part with borders can be done, if so: primitives that are the same for all shapes have
-    /// none, and borders are to stay.
-    pub(super) fn closed_alone(&self) -> Option<String> {
+    /// Why parts with borders and with handles cannot be done, if so: primitives that are the same
+    /// for all shapes have neither.
+    pub(super) fn sphere_alone(&self) -> SphereAlone {
         let primitive = self.primitive();
         let other = match primitive {
             Primitive::QuadSphere => Primitive::Flow,
             Primitive::Icosphere => Primitive::Adaptive,
-            Primitive::Flow | Primitive::Adaptive => return None,
+            Primitive::Flow | Primitive::Adaptive => return SphereAlone::default(),
         };
-        if self.borders == Borders::Fill {
-            return None;
-        }
         let [name, other] = [primitive, other].map(Primitive::name);
-        Some(format!(
-            "the {name} primitive has no borders; choose {other}, or fill all borders"
-        ))
+        let borders =
+            format!("the {name} primitive has no borders; choose {other}, or fill all borders");
+        SphereAlone {
+            borders: (self.borders != Borders::Fill).then_some(borders),
+            handles: Some(format!("the {name} primitive has no handles; choose {other}")),
+        }
     }
 
     /// Whether the size is in its range.
@@ -167,16 +173,18 @@ mod tests {
                 "the icosphere primitive has no borders; choose adaptive, ",
             ),
         ] {
-            let why = asked(primitive).closed_alone().unwrap();
-            assert!(why.starts_with(words), "{why}");
+            let why = asked(primitive).sphere_alone();
+            let (borders, handles) = (why.borders.unwrap(), why.handles.unwrap());
+            assert!(borders.starts_with(words), "{borders}");
+            assert!(handles.contains("has no handles; choose "), "{handles}");
             let filled = Settings {
                 borders: Borders::Fill,
                 ..asked(primitive)
             };
-            assert_eq!(filled.closed_alone(), None);
+            assert_eq!(filled.sphere_alone().borders, None);
         }
         for primitive in [Primitive::Flow, Primitive::Adaptive] {
-            assert_eq!(asked(primitive).closed_alone(), None);
+            assert_eq!(asked(primitive).sphere_alone(), SphereAlone::default());
         }
     }
 }

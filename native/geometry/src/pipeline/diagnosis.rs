@@ -1,30 +1,34 @@
 //! What keeps each part of a mesh from being remeshed: all of it, with numbers.
 
+use std::collections::HashSet;
+
+use super::borders::SphereAlone;
 use super::kept::{Flaw, Reason, count};
 use super::split::Part;
 use super::{Settings, handle};
-use crate::clean::{self, Apart, Tangle};
+use crate::clean::{self, Apart, SharedLine, Tangle};
 use crate::groups::Groups;
 use crate::mesh::{FaceId, HalfedgeId, Id, PolygonMesh, TriangleMesh, VertexId};
 
 /// All parts in the order of their first faces.
 ///
-/// Where `closed_alone` says why, a part with borders has that reason not to be done.
+/// Where `alone` says why, a part with borders or handles has that reason not to be done.
 pub fn parts(
-    (mesh, settings, closed_alone): (&PolygonMesh, &Settings, Option<String>),
+    (mesh, settings, alone): (&PolygonMesh, &Settings, SphereAlone),
     apart: &Apart,
     (component, n): (&[u32], usize),
 ) -> Vec<Part> {
     let told = Told {
         mesh,
-        closed_alone,
+        alone,
         reach: settings
             .weld
             .filter(|_| apart.is_open())
             .map(|share| clean::distance(mesh, share)),
+        shared: apart.shared.iter().flat_map(SharedLine::edges).collect(),
     };
     let mut surfaces = surfaces(apart, component, n);
-    if surfaces.iter().any(|surface| surface.genus() != 0) {
+    if told.alone.handles.is_some() && surfaces.iter().any(|surface| surface.genus() != 0) {
         let loops = handle::loops(&apart.mesh);
         for (surface, edges) in surfaces.iter_mut().zip(loops) {
             surface.handle = edges.iter().map(|e| e.map(|v| apart.origin[v])).collect();
@@ -53,6 +57,7 @@ struct Surface {
     n_vertices: usize,
     n_triangles: usize,
     n_loops: usize,
+    n_border: usize,
     border: Vec<[VertexId; 2]>,
     /// A loop of a handle, if there is one.
     handle: Vec<[VertexId; 2]>,
@@ -81,7 +86,12 @@ fn surfaces(apart: &Apart, component: &[u32], n: usize) -> Vec<Surface> {
         let surface = &mut surfaces[of(border[0])];
         surface.n_loops += 1;
         let ends = |&h: &HalfedgeId| [mesh.origin(h), mesh.target(h)].map(|v| apart.origin[v]);
-        surface.border.extend(border.iter().map(ends));
+        surface.n_border += border.len();
+        // Of an edge that was cut in the middle one half has both ends of the input's.
+        let is_edge = |[a, b]: &[VertexId; 2]| a != b;
+        surface
+            .border
+            .extend(border.iter().map(ends).filter(is_edge));
     }
     surfaces
 }
@@ -98,7 +108,7 @@ fn has_area(mesh: &TriangleMesh, face: FaceId) -> bool {
 impl Surface {
     /// Half of what the Euler number lacks to that of a sphere with as many holes.
     fn genus(&self) -> i64 {
-        let n_edges = usize::midpoint(3 * self.n_triangles, self.border.len());
+        let n_edges = usize::midpoint(3 * self.n_triangles, self.n_border);
         let euler = self.n_vertices as i64 - n_edges as i64 + self.n_triangles as i64;
         (2 - self.n_loops as i64 - euler) / 2
     }
@@ -107,10 +117,12 @@ impl Surface {
 /// Puts what was found in words.
 struct Told<'a> {
     mesh: &'a PolygonMesh,
-    /// Why a part with borders cannot be done, if so.
-    closed_alone: Option<String>,
+    /// Why a part with borders or handles cannot be done, if so.
+    alone: SphereAlone,
     /// Up to which gap borders were welded, where they were.
     reach: Option<f64>,
+    /// The edges of more than two faces.
+    shared: HashSet<[VertexId; 2]>,
 }
 
 impl Told<'_> {
@@ -119,11 +131,9 @@ impl Told<'_> {
         let border = self.border(faces, surface.n_loops, &surface.border);
         let flat = self.flat(surface);
         let genus = surface.genus();
-        let handles = (genus != 0).then(|| {
-            let text = format!(
-                "genus {genus}: only meshes without handles (genus 0) can be done; close the \
-                 handles first"
-            );
+        let handles = self.alone.handles.as_ref().filter(|_| genus != 0);
+        let handles = handles.map(|why| {
+            let text = format!("genus {genus}: {why}");
             Reason::new(
                 self.mesh,
                 faces,
@@ -136,45 +146,32 @@ impl Told<'_> {
     }
 
     fn of_tangle(&self, tangle: &Tangle) -> Vec<Reason> {
-        let shared = self.shared(tangle);
         let border = self.border(&tangle.faces, n_loops(&tangle.border), &tangle.border);
-        let one_sided = tangle.one_sided.map(|[a, b]| {
-            let text = format!(
-                "the surface cannot be oriented (it has one side, like a moebius strip): faces \
-                 disagree along the edge between vertices {a} and {b} whichever way they are turned"
-            );
-            Reason::new(self.mesh, &tangle.faces, &[[a, b]], Flaw::OneSided, text)
-        });
-        [shared, one_sided, border].into_iter().flatten().collect()
+        let [a, b] = tangle.one_sided;
+        let text = format!(
+            "the surface cannot be oriented (it has one side, like a moebius strip): faces \
+             disagree along the edge between vertices {a} and {b} whichever way they are turned"
+        );
+        let one_sided = Reason::new(self.mesh, &tangle.faces, &[[a, b]], Flaw::OneSided, text);
+        std::iter::once(one_sided).chain(border).collect()
     }
 
     fn border(&self, faces: &[FaceId], n_loops: usize, edges: &[[VertexId; 2]]) -> Option<Reason> {
         let n_edges = edges.len();
-        let why = self.closed_alone.as_ref().filter(|_| n_edges > 0)?;
+        let why = self.alone.borders.as_ref().filter(|_| n_edges > 0)?;
+        let is_shared = |[a, b]: &&[VertexId; 2]| self.shared.contains(&[*a.min(b), *a.max(b)]);
+        let shared = match edges.iter().filter(is_shared).count() {
+            0 => String::new(),
+            n => format!(" ({n} of them where 3 or more faces meet)"),
+        };
         let [loops, borders] = [count(n_loops, "border loop"), count(n_edges, "border edge")];
         let weld = match self.reach {
             Some(reach) => format!("; borders farther apart than {reach:.2e} are not welded"),
             None => "; only equal points are welded".to_owned(),
         };
-        let text = format!("{loops}, {borders}: {why}{weld}");
+        let text = format!("{loops}, {borders}{shared}: {why}{weld}");
         let flaw = Flaw::Border { n_loops, n_edges };
         Some(Reason::new(self.mesh, faces, edges, flaw, text))
-    }
-
-    fn shared(&self, tangle: &Tangle) -> Option<Reason> {
-        let first = tangle.shared.first()?;
-        let [n_faces, n_edges] = [first.n_faces, tangle.shared.len()];
-        let [a, b] = first.ends;
-        let more = match n_edges {
-            1 => String::new(),
-            _ => format!(" ({n_edges} edges of the part have more than 2 faces)"),
-        };
-        let text = format!(
-            "{n_faces} faces meet at the edge between vertices {a} and {b}; at most 2 can{more}"
-        );
-        let edges: Vec<_> = tangle.shared.iter().map(|edge| edge.ends).collect();
-        let flaw = Flaw::SharedEdges { n_edges, n_faces };
-        Some(Reason::new(self.mesh, &tangle.faces, &edges, flaw, text))
     }
 
     fn flat(&self, surface: &Surface) -> Option<Reason> {

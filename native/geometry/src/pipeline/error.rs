@@ -6,6 +6,7 @@ use super::kept::{Kept, refusal};
 use super::report::Report;
 use super::settings::{Kind, MAX_FACES, MIN_FACES, Primitive};
 use super::warning::{Warning, grave};
+use crate::close::handles;
 use crate::mesh::VertexId;
 use crate::progress::Cancelled;
 use crate::{clean, close, decimate, deform, embed, flow, pair, sphere};
@@ -118,6 +119,9 @@ pub enum Error {
     /// Borders could not be closed.
     #[error(transparent)]
     Close(close::Error),
+    /// Handles could not be cut.
+    #[error(transparent)]
+    Cut(handles::Error),
     /// Decimation failed.
     #[error(transparent)]
     Decimate(decimate::Error),
@@ -171,6 +175,7 @@ macro_rules! lift {
 lift!(
     clean::Error => Clean,
     close::Error => Close,
+    handles::Error => Cut,
     decimate::Error => Decimate,
     decimate::CollapseError => Collapse,
     embed::Error => Embed,

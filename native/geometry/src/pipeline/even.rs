@@ -5,6 +5,7 @@
 
 use glam::DVec3;
 
+use super::open::Opening;
 use crate::deform::{self, Held, Sizes, Target};
 use crate::elementary::powf;
 use crate::measure::{FeatureLine, feature_lines, loose_share, sharp_edges};
@@ -13,7 +14,6 @@ use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
 use crate::sphere::{self, Adaptive};
 use crate::sphere_map::SphereMap;
-use super::open::Opening;
 use crate::{embed, flow, pipeline, transfer};
 
 /// The even surface has this many triangles at least, so that the field sees the shape.

@@ -12,6 +12,7 @@ use super::probe::n_missed;
 use super::{density, mirror, rods};
 use crate::deform::{self, Flowing, Target};
 use crate::embed::{self, Covered};
+use crate::flow::FirmEdges;
 use crate::measure::FeatureLine;
 use crate::mesh::{HalfedgeMap, VertexMap};
 use crate::mirror::{Doubled, Reflection};
@@ -63,7 +64,7 @@ struct Ground<'a> {
     /// Those that lie along marked ones.
     marked: HalfedgeMap<bool>,
     /// Those that lie along borders of a part that was closed.
-    border: Option<HalfedgeMap<bool>>,
+    border: Option<FirmEdges>,
     /// Whose image is whose, where the even surface is its own image.
     doubled: Option<Doubled>,
     sphere: sphere::Report,
@@ -79,7 +80,7 @@ type Wearing = (
     SphereMap,
     HalfedgeMap<bool>,
     HalfedgeMap<bool>,
-    Option<HalfedgeMap<bool>>,
+    Option<FirmEdges>,
 );
 
 /// Why an attempt gave no quads.
@@ -127,11 +128,13 @@ pub fn along(
         Ok(even) => even,
         Err(reason) => return Ok(Err(reason)),
     };
+    let border = asked.opening.zip(even.border);
+    let border = border.map(|(opening, is_on)| opening.firm(even.map.mesh(), is_on));
     let ground = Ground {
         even: even.map,
         lines: even.lines,
         marked: even.marked,
-        border: even.border,
+        border,
         doubled: None,
         sphere: even.sphere,
         target,
@@ -183,12 +186,10 @@ fn symmetric(
         let lines = ground.keeps_lines().then_some(&ground.lines);
         told(match (symmetry, &ground.border) {
             (Symmetry::OtherSide(sheet), Some(border)) => {
-                sheet.doubled((&ground.even, border), ground.target, &part)
+                sheet.doubled((&ground.even, &border.is_on), ground.target, &part)
             }
             (Symmetry::OtherSide(_), None) => Ok(Err("it has no borders".to_owned())),
-            (Symmetry::Plane(axis), _) => {
-                mirror::symmetric((&ground.even, lines), axis, &part)
-            }
+            (Symmetry::Plane(axis), _) => mirror::symmetric((&ground.even, lines), axis, &part),
         })
     })?;
     let mut symmetric = None;
@@ -222,14 +223,12 @@ fn symmetric(
 
 impl Ground<'_> {
     /// Takes an even surface that is its own image in place of the usual one, which it returns.
-    fn doubled(
-        &mut self,
-        even: SphereMap,
-        doubled: Doubled,
-    ) -> Wearing {
+    fn doubled(&mut self, even: SphereMap, doubled: Doubled) -> Wearing {
         let carried = |lines| doubled.carried(self.even.mesh(), lines);
         let (lines, marked) = (carried(&self.lines), carried(&self.marked));
-        let border = self.border.as_ref().map(carried);
+        let border = self.asked.opening.zip(self.border.as_ref());
+        let border =
+            border.map(|(opening, firm)| opening.firm(doubled.mesh(), carried(&firm.is_on)));
         self.doubled = Some(doubled);
         (
             std::mem::replace(&mut self.even, even),

@@ -67,13 +67,6 @@ pub enum Flaw {
         /// How many.
         genus: i64,
     },
-    /// More than two faces share edges.
-    SharedEdges {
-        /// How many edges.
-        n_edges: usize,
-        /// How many faces share the first.
-        n_faces: usize,
-    },
     /// It has one side only.
     OneSided,
     /// It encloses nothing.

@@ -11,7 +11,7 @@ use super::flow::Asked;
 use super::flowed::{Flowed, FlowedPart};
 use super::marks::Marks;
 use super::mirror::{self, Faced, Plane, Role, face};
-use super::open::{Closing, Opening};
+use super::open::{Closing, Opening, Small};
 use super::paired::{Instead, Laid, paired};
 use super::report::{Mirrored, PartReport, Reduced};
 use super::settings::{Kind, Primitive, Settings};
@@ -83,8 +83,8 @@ pub struct Ground<'a> {
 
 struct Reduction {
     mesh: TriangleMesh,
-    /// Its borders, where it was closed.
-    border: Option<HalfedgeMap<bool>>,
+    /// The same with its borders, where it was closed.
+    small: Option<Small>,
     reduced: Option<Reduced>,
     report: Option<decimate::Report>,
 }
@@ -94,8 +94,8 @@ impl PartJob<'_> {
         let Self { part, wanted } = self;
         let n_asked = wanted.n_faces;
         let (n_input_faces, area) = (part.n_faces(), measure::total_area(&part));
-        let closing = Closing::new(&part, wanted.settings, progress)?;
-        let opened = closing.as_ref().map(Closing::told);
+        let closing = Closing::new(&part, (wanted.settings, n_asked), progress)?;
+        let opened = closing.as_ref().and_then(Closing::told);
         let filling = closing.as_ref().map(Closing::filling).unwrap_or_default();
         let (part, closing) = match closing {
             Some(closing) if closing.is_filled() => (closing.into_mesh(), None),
@@ -132,9 +132,9 @@ impl PartJob<'_> {
         let border = closing.as_ref().map(Closing::border);
         let lines = (&marked, border.as_ref());
         let target = clock.step("deform", || wanted.target((part, lines), progress))?;
-        let opening = match (closing, reduction.border) {
-            (Some(closing), Some(border)) => {
-                Some(closing.opening((&embedded.map, border), progress)?)
+        let opening = match (closing, reduction.small) {
+            (Some(closing), Some(small)) => {
+                Some(closing.opening(&small, wanted.n_faces, progress)?)
             }
             _ => None,
         };
@@ -234,10 +234,10 @@ impl Wanted<'_> {
         let small = closing.reduced(self.n_map_faces(), progress)?;
         let reason = "the part is open, and has to be closed first".to_owned();
         Ok(Reduction {
-            mesh: small.mesh,
-            border: Some(small.border),
+            mesh: small.mesh.clone(),
             reduced: self.reduced.map(|_| Reduced::Refused { reason }),
-            report: small.report,
+            report: small.report.clone(),
+            small: Some(small),
         })
     }
 
@@ -339,7 +339,7 @@ impl Wanted<'_> {
         if start.n_faces() <= n_faces {
             return Ok(Reduction {
                 mesh: start.into_owned(),
-                border: None,
+                small: None,
                 reduced,
                 report: None,
             });
@@ -348,7 +348,7 @@ impl Wanted<'_> {
         let simplified = decimate::simplify(&start, &settings, progress)?;
         Ok(Reduction {
             mesh: simplified.mesh,
-            border: None,
+            small: None,
             reduced,
             report: Some(simplified.report),
         })

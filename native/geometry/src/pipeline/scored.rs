@@ -180,7 +180,9 @@ pub fn score(
     let weld = Settings::default().weld;
     let topology = match clean::take_apart(input, weld, &progress.part("", 0.0, 0.1)) {
         Err(clean::Error::Cancelled(cancelled)) => return Err(cancelled.into()),
-        Ok(apart) if apart.tangles.is_empty() => Some(topology_of_triangles(&apart.mesh)),
+        Ok(apart) if apart.tangles.is_empty() && apart.shared.is_empty() => {
+            Some(topology_of_triangles(&apart.mesh))
+        }
         _ => None,
     };
     let reference = Reference {

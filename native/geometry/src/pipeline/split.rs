@@ -6,6 +6,7 @@
 
 use std::collections::HashMap;
 
+use super::borders::SphereAlone;
 use super::density::Density;
 use super::frame::{Frame, bits};
 use super::kept::{Flaw, Kept, Outcome, Reason};
@@ -51,7 +52,7 @@ impl Parts {
     ) -> Result<(Self, Cleaned), Error> {
         let (component, n) = apart.mesh.face_components();
         let mut parts = diagnosis::parts(
-            (input.mesh, settings, settings.closed_alone()),
+            (input.mesh, settings, settings.sphere_alone()),
             &apart,
             (&component, n),
         );
@@ -72,9 +73,13 @@ impl Parts {
             strict: true,
             ..Settings::default()
         };
-        let why = "only closed meshes can be embedded; close it first".to_owned();
+        let why = |what| Some(format!("only meshes without {what} can be embedded"));
+        let alone = SphereAlone {
+            borders: why("borders"),
+            handles: why("handles"),
+        };
         let (component, n) = apart.mesh.face_components();
-        let parts = diagnosis::parts((mesh, &settings, Some(why)), &apart, (&component, n));
+        let parts = diagnosis::parts((mesh, &settings, alone), &apart, (&component, n));
         let chosen = Self::chosen(mesh, apart, (&component, n), parts, &settings);
         chosen.map(|(_, cleaned)| cleaned)
     }

@@ -1,6 +1,7 @@
 //! Meshes of several parts, good and bad.
 
 use glam::DVec3;
+use orbflow_geometry::elementary::direction;
 use orbflow_geometry::embed::Solver;
 use orbflow_geometry::mesh::{PolygonMesh, TriangleMesh};
 use orbflow_geometry::pipeline::{self, Error, Input, Kept, Remeshed, Settings};
@@ -134,6 +135,25 @@ pub fn walled_box(shift: DVec3) -> Mixed {
             &[1, 4, 10, 7],
         ],
     );
+    mixed
+}
+
+/// A strip of twelve quads that turns by half on its way round.
+pub fn moebius_strip(shift: DVec3) -> Mixed {
+    let points: Vec<[f64; 3]> = (0..24)
+        .map(|i| {
+            let turn = f64::from(i / 2) / 12.0 * std::f64::consts::TAU;
+            let [half, across] = [turn / 2.0, f64::from(i % 2) - 0.5];
+            let round = direction(turn) * (2.0 + across * direction(half).x);
+            (round.extend(across * direction(half).y) + shift).to_array()
+        })
+        .collect();
+    let rung = |i: u32| if i < 12 { [2 * i, 2 * i + 1] } else { [1, 0] };
+    let quad = |i: u32| [rung(i)[0], rung(i + 1)[0], rung(i + 1)[1], rung(i)[1]];
+    let quads: Vec<[u32; 4]> = (0..12).map(quad).collect();
+    let faces: Vec<&[u32]> = quads.iter().map(<[u32; 4]>::as_slice).collect();
+    let mut mixed = Mixed::default();
+    mixed.add_faces(&points, &faces);
     mixed
 }
 

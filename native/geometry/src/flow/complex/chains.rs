@@ -58,7 +58,9 @@ impl Chains {
 
     /// Whether a line has to be met.
     pub fn is_firm(&self, line: usize) -> bool {
-        self.firm.binary_search_by_key(&line, |firm| firm.line).is_ok()
+        self.firm
+            .binary_search_by_key(&line, |firm| firm.line)
+            .is_ok()
     }
 
     /// How many terms there are in all, each as often as its factor says.

@@ -2,9 +2,9 @@
 
 use crate::flow::field::OrientationField;
 use crate::flow::singularities::{Reach, shift};
-use crate::mesh::{FaceMap, HalfedgeMap, TriangleMesh, VertexId, VertexMap};
+use crate::mesh::{FaceMap, TriangleMesh, VertexId, VertexMap};
 
-use super::corners;
+use super::{Sharp, corners};
 
 /// A corner takes singularities no farther away than this many edges of a quad.
 const CORNER_RADIUS: f64 = 1.0;
@@ -20,10 +20,11 @@ const LINE_RADIUS: f64 = 0.6;
 pub fn attract(
     mesh: &TriangleMesh,
     field: &mut OrientationField,
-    sharp: &HalfedgeMap<bool>,
+    sharp: Sharp<'_>,
     sizes: &FaceMap<f64>,
 ) {
     let is_corner = corners(mesh, sharp);
+    let sharp = sharp.edges;
     let is_sharp: VertexMap<bool> = mesh
         .vertex_ids()
         .map(|v| mesh.outgoing(v).any(|h| sharp[h]))

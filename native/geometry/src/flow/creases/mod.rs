@@ -14,6 +14,7 @@ mod rows;
 mod seams;
 
 use crate::flow::field::OrientationField;
+use crate::flow::quads::FirmEdges;
 use crate::measure::angle_between;
 use crate::mesh::{HalfedgeId, HalfedgeMap, TriangleMesh, VertexId, VertexMap};
 
@@ -26,23 +27,29 @@ pub use seams::{goals, seams};
 /// A line that turns by more than this at a vertex has a corner there (53°).
 const CORNER_ANGLE: f64 = 0.927;
 
+/// Edges that lines run along.
+#[derive(Clone, Copy)]
+pub struct Sharp<'a> {
+    /// They, on both sides of each.
+    pub edges: &'a HalfedgeMap<bool>,
+    /// Those whose corners are known.
+    pub firm: Option<&'a FirmEdges>,
+}
+
 /// The vertices at which lines of sharp edges branch, stop or turn sharply.
-pub fn corners(mesh: &TriangleMesh, sharp: &HalfedgeMap<bool>) -> VertexMap<bool> {
+pub fn corners(mesh: &TriangleMesh, sharp: Sharp<'_>) -> VertexMap<bool> {
     mesh.vertex_ids()
         .map(|v| is_corner(mesh, sharp, v))
         .collect()
 }
 
 /// All lines of sharp edges, each in one of its two directions.
-fn chains(
-    mesh: &TriangleMesh,
-    field: &OrientationField,
-    sharp: &HalfedgeMap<bool>,
-) -> Vec<Vec<HalfedgeId>> {
+fn chains(mesh: &TriangleMesh, field: &OrientationField, sharp: Sharp<'_>) -> Vec<Vec<HalfedgeId>> {
     let mut is_end: VertexMap<bool> = corners(mesh, sharp)
         .iter_ids()
         .map(|(v, is_corner)| *is_corner || field.indices[v] != 0)
         .collect();
+    let sharp = sharp.edges;
     let mut used = HalfedgeMap::filled(sharp.len(), false);
     let mut lines = Vec::new();
     // First the lines between ends; what is left are closed ones.
@@ -74,12 +81,15 @@ fn sharp_from(
     mesh.outgoing(vertex).filter(|&h| sharp[h])
 }
 
-fn is_corner(mesh: &TriangleMesh, sharp: &HalfedgeMap<bool>, vertex: VertexId) -> bool {
-    let mut leaving = sharp_from(mesh, sharp, vertex);
+fn is_corner(mesh: &TriangleMesh, sharp: Sharp<'_>, vertex: VertexId) -> bool {
+    let mut leaving = sharp_from(mesh, sharp.edges, vertex);
     let [Some(a), Some(b), None] = [leaving.next(), leaving.next(), leaving.next()] else {
         // No corner either where there is no line at all.
-        return sharp_from(mesh, sharp, vertex).next().is_some();
+        return sharp_from(mesh, sharp.edges, vertex).next().is_some();
     };
+    if let Some(firm) = sharp.firm.filter(|firm| firm.is_on[a] && firm.is_on[b]) {
+        return firm.is_corner[vertex];
+    }
     let [a, b] = [a, b].map(|h| mesh.position(mesh.target(h)) - mesh.position(vertex));
     angle_between(-a, b) > CORNER_ANGLE
 }

@@ -14,7 +14,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::f64::consts::FRAC_PI_2;
 
-use super::corners;
+use super::{Sharp, corners};
 use crate::flow::field::OrientationField;
 use crate::flow::singularities::shift;
 use crate::groups::Groups;
@@ -55,13 +55,13 @@ impl<'a> Network<'a> {
     /// The network of some creases; none if there are none or too many end loosely.
     pub fn new(
         mesh: &'a TriangleMesh,
-        sharp: &'a HalfedgeMap<bool>,
+        Sharp { edges: sharp, firm }: Sharp<'a>,
         mirror: Option<&'a Doubled>,
     ) -> Option<Self> {
         if !sharp.iter().any(|&is| is) || loose_share(mesh, sharp) > LOOSE {
             return None;
         }
-        let is_corner = corners(mesh, sharp);
+        let is_corner = corners(mesh, Sharp { edges: sharp, firm });
         let mut groups = Groups::new(mesh.n_faces());
         for h in mesh.halfedge_ids().filter(|&h| !sharp[h]) {
             if let Some(twin) = mesh.twin(h) {
@@ -140,10 +140,11 @@ impl<'a> Network<'a> {
         };
         let lies_free = |v: VertexId| self.indices[v].is_none() && !self.is_in_plane(v);
         let near = |v: &VertexId| depths[*v] < ASIDE * edge(*v);
-        let own = self.mesh.vertex_ids().filter(|&v| self.is_own(v) && lies_free(v));
-        let close: Vec<VertexId> = own
-            .filter(|v| field.indices[*v] != 0 && near(v))
-            .collect();
+        let own = self
+            .mesh
+            .vertex_ids()
+            .filter(|&v| self.is_own(v) && lies_free(v));
+        let close: Vec<VertexId> = own.filter(|v| field.indices[*v] != 0 && near(v)).collect();
         for v in close {
             let patch = self.patch(v);
             let is_free = |u: VertexId| {

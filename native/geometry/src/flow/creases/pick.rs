@@ -1,6 +1,6 @@
 //! Which lines are kept, and where they end.
 
-use super::chains;
+use super::{Sharp, chains};
 use crate::flow::field::OrientationField;
 use crate::mesh::{HalfedgeId, HalfedgeMap, TriangleMesh, VertexId};
 
@@ -31,12 +31,7 @@ pub struct Line {
 ///
 /// They end at corners and singularities, and long ones come in pieces; where an end is too near to another or to a singularity
 /// that is not on the line, the line ends before. O(n + lines · singularities).
-pub fn lines(
-    mesh: &TriangleMesh,
-    field: &OrientationField,
-    sharp: &HalfedgeMap<bool>,
-    h: f64,
-) -> Vec<Line> {
+pub fn lines(mesh: &TriangleMesh, field: &OrientationField, sharp: Sharp<'_>, h: f64) -> Vec<Line> {
     lines_beside(&[], (mesh, field, sharp), h)
 }
 
@@ -44,7 +39,7 @@ pub fn lines(
 /// are ends too.
 pub fn lines_beside(
     firm: &[Line],
-    (mesh, field, sharp): (&TriangleMesh, &OrientationField, &HalfedgeMap<bool>),
+    (mesh, field, sharp): (&TriangleMesh, &OrientationField, Sharp<'_>),
     h: f64,
 ) -> Vec<Line> {
     let all = longest_first(mesh, chains(mesh, field, sharp));
@@ -82,7 +77,7 @@ pub fn lines_beside(
 pub fn whole_lines(
     mesh: &TriangleMesh,
     field: &OrientationField,
-    sharp: &HalfedgeMap<bool>,
+    sharp: Sharp<'_>,
     h: f64,
 ) -> Vec<Line> {
     let all = longest_first(mesh, chains(mesh, field, sharp));

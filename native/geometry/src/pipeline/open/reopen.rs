@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::Opening;
 use crate::deform::{Deformed, Target};
 use crate::groups::Groups;
-use crate::measure::{PolygonEdges, area_vector, topology, topology_of_triangles};
+use crate::measure::{PolygonEdges, area_vector, topology};
 use crate::mesh::{PolygonMesh, VertexId};
 use crate::progress::{Cancelled, Progress};
 
@@ -35,8 +35,16 @@ impl Opening {
         let is_kept: Vec<bool> = patches.iter().map(|&p| votes[p as usize] > 0.0).collect();
         let opened = deformed.only(&is_kept, progress)?;
         let opened = self.onto_borders(opened, progress)?;
+        let opened = match self.punctured(opened, progress)? {
+            Ok(opened) => self.welded(opened, progress)?,
+            refused => refused,
+        };
+        let opened = match opened {
+            Ok(opened) => opened,
+            refused => return Ok(refused),
+        };
         let found = topology(&opened.mesh, progress)?;
-        let wanted = topology_of_triangles(self.bare.mesh());
+        let wanted = self.wanted;
         let figures = [
             ("pieces", found.n_components, wanted.n_components),
             ("borders", found.n_borders, wanted.n_borders),
@@ -56,7 +64,8 @@ impl Opening {
     /// The area of a face, less than zero if it lies on what is virtual.
     pub(super) fn vote(&self, corners: &[DVec3], target: &Target) -> f64 {
         let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
-        let halves = (2..corners.len()).map(|i| area_vector([corners[0], corners[i - 1], corners[i]]));
+        let halves =
+            (2..corners.len()).map(|i| area_vector([corners[0], corners[i - 1], corners[i]]));
         let area = halves.sum::<DVec3>();
         let away = |real: bool| {
             let is_wanted = |face| self.is_real[face] == real && target.looks_along(face, area);
@@ -71,13 +80,23 @@ impl Opening {
     }
 
     /// The same with the vertices of its borders on those of the part.
-    fn onto_borders(&self, opened: Deformed, progress: &Progress<'_>) -> Result<Deformed, Cancelled> {
+    fn onto_borders(
+        &self,
+        opened: Deformed,
+        progress: &Progress<'_>,
+    ) -> Result<Deformed, Cancelled> {
         let mesh = &opened.mesh;
         let edges = PolygonEdges::new(mesh, progress)?;
         let is_border = edges.border_vertices(mesh.n_vertices());
         let tree = self.edges.tree(progress)?;
         let moved = mesh.positions().iter().zip(is_border);
-        let moved = moved.map(|(&p, is_border)| if is_border { tree.closest(p).position } else { p });
+        let moved = moved.map(|(&p, is_border)| {
+            if is_border {
+                tree.closest(p).position
+            } else {
+                p
+            }
+        });
         let moved = moved.collect();
         Ok(opened.moved(moved))
     }
@@ -89,7 +108,8 @@ fn patches(
     border: &[[VertexId; 2]],
     progress: &Progress<'_>,
 ) -> Result<(Vec<u32>, usize), Cancelled> {
-    let border: HashSet<[VertexId; 2]> = border.iter().map(|&[a, b]| [a.min(b), a.max(b)]).collect();
+    let border: HashSet<[VertexId; 2]> =
+        border.iter().map(|&[a, b]| [a.min(b), a.max(b)]).collect();
     let edges = PolygonEdges::new(mesh, progress)?;
     let mut groups = Groups::new(mesh.n_faces());
     for c in 0..edges.n_corners() {

@@ -120,7 +120,11 @@ pub fn sized(
     let n_free = n_vertices.saturating_sub(4 + creases.places.len());
     let places = creases.clear(map, sample::sample(map, density, n_free, &mut random));
     let mut net = Net::tetrahedron(map);
-    let creases::Inserted { vertices, edges, n_apart } = creases.insert(&mut net);
+    let creases::Inserted {
+        vertices,
+        edges,
+        n_apart,
+    } = creases.insert(&mut net);
     let part = progress.part("", 0.0, 0.3);
     scatter(&mut net, &places, &mut random, &part)?;
     let mut is_fixed = VertexMap::filled(net.n_vertices(), false);
