@@ -16,11 +16,7 @@ use serde_json::Value;
 use support::{Folder, run};
 
 /// Quads of a square, as OBJ; the sides of its columns may be one.
-fn rows(
-    [n, m]: [usize; 2],
-    is_round: bool,
-    place: impl Fn(f64, f64) -> [f64; 3],
-) -> String {
+fn rows([n, m]: [usize; 2], is_round: bool, place: impl Fn(f64, f64) -> [f64; 3]) -> String {
     let n_columns = if is_round { m } else { m + 1 };
     let mut text = String::new();
     for (i, j) in (0..=n).flat_map(|i| (0..n_columns).map(move |j| (i, j))) {
@@ -29,7 +25,12 @@ fn rows(
     }
     let name = |i: usize, j: usize| 1 + i * n_columns + j % n_columns;
     for (i, j) in (0..n).flat_map(|i| (0..m).map(move |j| (i, j))) {
-        let quad = [name(i, j), name(i, j + 1), name(i + 1, j + 1), name(i + 1, j)];
+        let quad = [
+            name(i, j),
+            name(i, j + 1),
+            name(i + 1, j + 1),
+            name(i + 1, j),
+        ];
         let _ = writeln!(text, "f {} {} {} {}", quad[0], quad[1], quad[2], quad[3]);
     }
     text
@@ -87,7 +88,9 @@ fn off_border(input: &PolygonMesh, output: &PolygonMesh) -> f64 {
 }
 
 fn mesh(text: &str) -> PolygonMesh {
-    read(text.as_bytes(), Format::Obj).expect("it is an obj file").mesh
+    read(text.as_bytes(), Format::Obj)
+        .expect("it is an obj file")
+        .mesh
 }
 
 struct Done {
@@ -107,7 +110,9 @@ fn remesh(text: &str, more: &[&str]) -> Done {
     let folder = Folder::new();
     let input = folder.write("open.obj", text);
     let [output, report] = ["out.obj", "report.json"].map(|name| folder.path(name));
-    let usual = ["remesh", &input, &output, "--mirror", "off", "--report", &report];
+    let usual = [
+        "remesh", &input, &output, "--mirror", "off", "--report", &report,
+    ];
     let done = run(&[&usual[..], more].concat());
     assert_eq!(done.code, 0, "{}", done.err);
     Done {
@@ -125,7 +130,10 @@ fn open_meshes_stay_open_with_their_borders_where_they_were() {
         let [before, after] = done.topologies();
         assert_eq!((before.n_borders, before.genus), (n_borders, Some(0)));
         assert_eq!((after.n_borders, after.genus), (n_borders, Some(0)));
-        assert!(after.manifold && after.n_quads == after.n_faces, "{after:?}");
+        assert!(
+            after.manifold && after.n_quads == after.n_faces,
+            "{after:?}"
+        );
         assert_eq!(after.n_components, 1);
         assert!(off_border(&done.input, &done.output) < 1e-3);
         let opened = &done.report["parts"][0]["opened"];
@@ -153,11 +161,17 @@ fn a_plate_stays_a_plate_with_its_corners() {
 fn borders_are_filled_all_of_them_or_those_up_to_a_size() {
     // Round the tube it is 152 % of the diagonal.
     for (borders, n_filled) in [("fill", 2), ("fill:160", 2), ("fill:150", 0)] {
-        let done = remesh(&tube(), &["--faces", "100", "--borders", borders, "--strict"]);
+        let done = remesh(
+            &tube(),
+            &["--faces", "100", "--borders", borders, "--strict"],
+        );
         let [_, after] = done.topologies();
         assert_eq!((after.n_borders, after.genus), (2 - n_filled, Some(0)));
         let opened = &done.report["parts"][0]["opened"];
-        assert_eq!((&opened["n_borders"], &opened["n_filled"]), (&2.into(), &n_filled.into()));
+        assert_eq!(
+            (&opened["n_borders"], &opened["n_filled"]),
+            (&2.into(), &n_filled.into())
+        );
         let says = done.err.contains("open.obj: 2 borders filled");
         assert_eq!(says, n_filled > 0, "{}", done.err);
         // Of what was made for what was asked for, the score is as good as of a closed mesh.

@@ -104,7 +104,9 @@ impl Settings {
             format!("the {name} primitive has no borders; choose {other}, or fill all borders");
         SphereAlone {
             borders: (self.borders != Borders::Fill).then_some(borders),
-            handles: Some(format!("the {name} primitive has no handles; choose {other}")),
+            handles: Some(format!(
+                "the {name} primitive has no handles; choose {other}"
+            )),
         }
     }
 

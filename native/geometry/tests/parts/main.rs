@@ -8,14 +8,14 @@ mod sheets;
 
 use glam::DVec3;
 use mixed::{
-    Mixed, ball, cube, kinds, moebius_strip, remesh, settings, split_along, touching_blocks,
+    Mixed, ball, cube, kinds, moebius_strip, remesh, settings, sphere, split_along, touching_blocks,
 };
 use orbflow_geometry::embed::{OffsetPredictor, PredictError, Proposal, Solver};
 use orbflow_geometry::hierarchy::CollapseHierarchy;
 use orbflow_geometry::measure::topology;
 use orbflow_geometry::mesh::{FaceId, Id, PolygonMesh};
 use orbflow_geometry::pipeline::{
-    self, Borders, Error, Flaw, Input, Kind, Mirror, Outcome, Primitive, Remeshed, Settings, SmallParts,
+    self, Borders, Error, Flaw, Input, Kind, Mirror, Outcome, Remeshed, Settings, SmallParts,
 };
 use orbflow_geometry::progress::Progress;
 use proptest::prelude::*;
@@ -100,20 +100,23 @@ fn borders_are_no_reason_but_for_primitives_that_have_none() {
     open.add(&ball(3), DVec3::ZERO, 1.0);
     open.faces.pop();
     let mesh = open.mesh();
-    let sphere = |borders| Settings {
-        primitive: Some(Primitive::QuadSphere),
-        borders,
-        ..settings(60)
+    let filled = Settings {
+        borders: Borders::Fill,
+        ..sphere(60)
     };
-    let (kept, text) = refused(&mesh, &sphere(Borders::Keep));
+    let (kept, text) = refused(&mesh, &sphere(60));
     assert_eq!(kinds(&kept[0]), ["border"]);
     let Flaw::Border { n_loops, n_edges } = kept[0].reasons[0].flaw else {
         panic!("{kept:?}");
     };
-    assert_eq!((n_loops, n_edges, kept[0].reasons[0].edges.len()), (1, 3, 3));
-    let words = "1 border loop, 3 border edges: the quad-sphere primitive has no borders; choose flow";
+    assert_eq!(
+        (n_loops, n_edges, kept[0].reasons[0].edges.len()),
+        (1, 3, 3)
+    );
+    let words =
+        "1 border loop, 3 border edges: the quad-sphere primitive has no borders; choose flow";
     assert!(text.starts_with(words), "{text}");
-    for wanted in [sphere(Borders::Fill), settings(60)] {
+    for wanted in [filled, settings(60)] {
         let result = remesh(&mesh, &wanted).unwrap();
         let found = topology(&result.mesh, &Progress::none()).unwrap();
         let n_filled = usize::from(wanted.borders == Borders::Fill);
@@ -133,11 +136,7 @@ fn every_reason_of_every_part_is_told_when_none_can_be_done() {
     mixed.append(&torus);
     mixed.add(&common::torus(8, 6), DVec3::X * 9.0, 1.0);
     mixed.append(&moebius_strip(DVec3::X * 20.0));
-    let wanted = Settings {
-        primitive: Some(Primitive::QuadSphere),
-        ..settings(100)
-    };
-    let (kept, text) = refused(&mixed.mesh(), &wanted);
+    let (kept, text) = refused(&mixed.mesh(), &sphere(100));
     let all: Vec<_> = kept.iter().map(kinds).collect();
     assert_eq!(
         all,
@@ -332,10 +331,7 @@ fn seams_that_nearly_close_are_welded_up_to_the_distance() {
         let mesh = split_along(&ball(6), gap);
         let diagonal = mesh.bounds()[0].distance(mesh.bounds()[1]);
         // Halves that are not welded have borders, which this primitive has not.
-        let wanted = Settings {
-            primitive: Some(Primitive::QuadSphere),
-            ..settings(100)
-        };
+        let wanted = sphere(100);
         let result = remesh(&mesh, &wanted);
         if gap > 1e-5 {
             let Err(error) = result else {
@@ -400,7 +396,10 @@ fn the_embedding_alone_refuses_and_the_decimation_takes_borders() {
             assert_eq!((kept.len(), n_parts), (1, 2));
             assert_eq!(kinds(&kept[0]), ["border", "flat"]);
             let text = &kept[0].reasons[0].text;
-            assert!(text.contains("only closed meshes can be embedded"), "{text}");
+            assert!(
+                text.contains("only meshes without borders can be embedded"),
+                "{text}"
+            );
         }
         other => panic!("{other:?}"),
     }

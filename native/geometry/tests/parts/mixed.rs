@@ -4,7 +4,7 @@ use glam::DVec3;
 use orbflow_geometry::elementary::direction;
 use orbflow_geometry::embed::Solver;
 use orbflow_geometry::mesh::{PolygonMesh, TriangleMesh};
-use orbflow_geometry::pipeline::{self, Error, Input, Kept, Remeshed, Settings};
+use orbflow_geometry::pipeline::{self, Error, Input, Kept, Primitive, Remeshed, Settings};
 use orbflow_geometry::progress::Progress;
 use orbflow_geometry::random::Random;
 
@@ -22,6 +22,14 @@ pub fn settings(faces: usize) -> Settings {
         faces,
         threads: 1,
         ..Settings::default()
+    }
+}
+
+/// The quads of a blown up box: parts with borders or handles stay.
+pub fn sphere(faces: usize) -> Settings {
+    Settings {
+        primitive: Some(Primitive::QuadSphere),
+        ..settings(faces)
     }
 }
 
@@ -94,7 +102,10 @@ impl Mixed {
                 (shift + DVec3::new(f64::from(x), f64::from(y), random.unit())).to_array()
             });
             // A moebius strip.
-            mixed.add_faces(&points, &[&[0, 1, 2, 3], &[3, 2, 4, 5], &[5, 4, 0], &[5, 0, 1]]);
+            mixed.add_faces(
+                &points,
+                &[&[0, 1, 2, 3], &[3, 2, 4, 5], &[5, 4, 0], &[5, 0, 1]],
+            );
         }
         for p in &mut mixed.positions {
             *p *= size;

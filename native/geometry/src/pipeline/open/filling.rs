@@ -37,7 +37,10 @@ impl Closing {
         // Longer ones are opened again.
         let longest = self.asked * (1.0 + SAME);
         let stays = |face: &FaceId| round[group[face.index()] as usize] <= longest;
-        more().filter(stays).map(|face| mesh.triangle(face)).collect()
+        more()
+            .filter(stays)
+            .map(|face| mesh.triangle(face))
+            .collect()
     }
 
     /// What of the closed part is real: the part itself and what fills borders.
