@@ -5,9 +5,9 @@
 //!                                                └──────── target ───────▶ deform ┴─ join ─▶ transfer ─▶ polygons
 //! ```
 //!
-//! Every part that is a component of genus 0 gets its share of the faces by area; the others stay as
-//! they were. One with borders is closed before it is decimated and opened again once it has its
-//! faces (`open`). The map is made on a decimated mesh; the result is laid on the part at full
+//! Every part that is a surface of two sides gets its share of the faces by area; the others stay as
+//! they were. One with borders or handles is closed before it is decimated and opened again once it
+//! has its faces (`open`). The map is made on a decimated mesh; the result is laid on the part at full
 //! resolution.
 
 mod attempt;
