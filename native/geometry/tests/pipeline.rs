@@ -186,7 +186,7 @@ fn what_cannot_be_done_is_said_with_numbers() {
         found.starts_with("1 border loop, 4 border edges: "),
         "{found}"
     );
-    let found = message(&common::polygons(&common::torus(8, 6)), &quads);
+    let found = message(&common::polygons(&common::torus(8, 6)), &sphere);
     assert!(found.starts_with("genus 1: "), "{found}");
     let wrong = Settings {
         primitive: Some(Primitive::Icosphere),
