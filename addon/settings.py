@@ -35,6 +35,10 @@ _SMALL_PARTS = (
     ("KEEP", "Keep", "They stay as they were"),
     ("DROP", "Leave Out", "The result is without them"),
 )
+_BORDERS = (
+    ("KEEP", "Keep", "Open edges stay open: lines of edges of the result lie on them"),
+    ("FILL", "Fill", "Holes are closed, all of them or the small ones"),
+)
 _MIRRORS = (
     ("OFF", "Off", "The two sides of a mesh need not be alike"),
     ("AUTO", "Automatic", "Across the first axis, if any, in which every vertex has its image"),
@@ -167,6 +171,23 @@ class Settings:
         max=100.0,
         subtype="PERCENTAGE",
     )
+    borders: EnumProperty(
+        name="Borders",
+        description="What becomes of open edges: those around holes, and of sheets as of cloth",
+        items=_BORDERS,
+    )
+    fill_size: FloatProperty(
+        name="Fill Up To",
+        description=(
+            "Borders that are longer than this share of the whole mesh's size stay open; 0: all "
+            "are filled"
+        ),
+        default=0.0,
+        min=0.0,
+        max=1000.0,
+        soft_max=100.0,
+        subtype="PERCENTAGE",
+    )
     use_weld: BoolProperty(
         name="Weld Seams",
         description="Close gaps between open edges that lie on each other, as imported seams do",
@@ -243,6 +264,7 @@ def for_core(source: Settings) -> dict[str, Any]:
         "sharp_angle": math.degrees(source.sharp_angle),
         # Blender keeps fewer digits; those beyond are not what was asked for.
         "weld": float(f"{source.weld / 100:.6g}") if source.use_weld else None,
+        "fill_size": source.fill_size or None,
         "mirror": source.mirror.lower(),
         "predictor": source.predictor.lower(),
         "weights": preferences.weights() if source.predictor != "SOLVER" else None,
@@ -256,6 +278,8 @@ def is_of_use(source: Settings, name: str) -> bool:
         return source.kind == "QUADS" and source.primitive in {"AUTO", "FLOW"}
     if name == "mirror_modifier":
         return source.use_modifiers
+    if name == "fill_size":
+        return source.borders == "FILL"
     return name != "weld" or source.use_weld
 
 

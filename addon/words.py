@@ -23,10 +23,13 @@ _CLEANED = (
     ("n_duplicates", ("face that is there twice", "faces that are there twice")),
     ("n_doubled", ("triangle back to back with another", "triangles back to back with others")),
 )
+# The only ones that leave a part for borders or handles are those that are the same for all shapes.
+_CLOSED_ALONE = ", which this primitive cannot have: choose Automatic"
+_FILL = ", or fill all borders"
 #: What parts are that were left, by the kind of reason.
 OF_MANY = {
-    "border": "with holes (open edges)",
-    "handles": "with a hole through it like a ring or cup handle",
+    "border": f"with holes (open edges){_CLOSED_ALONE}{_FILL}",
+    "handles": f"with a hole through it like a ring or cup handle{_CLOSED_ALONE}",
     "one-sided": "whose inside and outside cannot be told apart (like a Moebius strip)",
     "flat": "flat",
     "small": "too small for this face count",
@@ -74,10 +77,10 @@ def reason(reason: dict[str, Any]) -> str:
     if kind in _OF_ONE:
         return _OF_ONE[kind]
     if kind == "border":
-        return f"has {count(reason['n_loops'], 'hole')} (open edges)"
+        return f"has {count(reason['n_loops'], 'hole')} (open edges){_CLOSED_ALONE}{_FILL}"
     if kind == "handles":
         through = "a hole" if reason["genus"] == 1 else f"{reason['genus']:,} holes"
-        return f"has {through} through it like a ring or cup handle"
+        return f"has {through} through it like a ring or cup handle{_CLOSED_ALONE}"
     return f"could not be done: {reason['text']}"
 
 
@@ -162,7 +165,7 @@ def exceptions(report: dict[str, Any]) -> list[str]:
     """In words what else is otherwise than was asked for."""
     lost = ", ".join(sorted(set(report["lost"])))
     told = [_without_marks(report), f"not carried over: {lost}" if lost else ""]
-    told += [_cleaned(report), _welded(report), _parted(report), _shown(report)]
+    told += [_cleaned(report), _welded(report), _parted(report), _filled(report), _shown(report)]
     told += _modifiers(report)
     return [each for each in told if each]
 
@@ -191,6 +194,13 @@ def _parted(report: dict[str, Any]) -> str:
     n, sheets = (report["clean"][name] for name in ("n_shared_edges", "n_sheets"))
     edges = f"{count(n, 'edge')} at which 3 or more faces meet"
     return f"taken apart at {edges} into {count(sheets, 'sheet')}" if n else ""
+
+
+def _filled(report: dict[str, Any]) -> str:
+    """How many borders were filled."""
+    opened = [part["opened"] for part in report["parts"] if part["opened"]]
+    n = sum(each["n_filled"] for each in opened)
+    return f"{count(n, 'border')} filled" if n else ""
 
 
 def _modifiers(report: dict[str, Any]) -> list[str]:

@@ -294,7 +294,7 @@ def test_a_run_that_fails_or_is_stopped_leaves_mesh_and_stack(
     before = arrays(thing)
     kept = [len(kind) for kind in (bpy.data.objects, bpy.data.meshes, bpy.data.shape_keys)]
     with pytest.raises(RuntimeError, match="genus"):
-        press.orbflow_remesh(faces=96)
+        press.orbflow_remesh(faces=96, primitive="QUAD_SPHERE")
 
     def stop(_: object) -> None:
         raise TypeError("stopped")

@@ -1,5 +1,7 @@
 """Meshes of several parts: what can be done is done, the rest comes back as it was."""
 
+from typing import Any
+
 import numpy as np
 import orbflow_native
 import pytest
@@ -27,6 +29,7 @@ def test_a_scrap_comes_back_bit_for_bit_and_is_named(mesh: Arrays) -> None:
     result = orbflow_native.remesh(
         *mesh,
         faces=200,
+        primitive="quad-sphere",
         scale=(1.7, 0.3, 1.1),
         material_index=np.arange(len(mesh[1]), dtype=np.int32),
         carried_edges=edges,
@@ -58,7 +61,9 @@ def test_a_scrap_comes_back_bit_for_bit_and_is_named(mesh: Arrays) -> None:
 
 def test_a_strict_run_raises_with_the_parts(mesh: Arrays) -> None:
     with pytest.raises(orbflow_native.InputError, match="1 of 2 parts cannot be done") as caught:
-        orbflow_native.remesh(*mesh, faces=200, strict=True, scale=(2.0, 1.0, 1.0))
+        orbflow_native.remesh(
+            *mesh, faces=200, primitive="quad-sphere", strict=True, scale=(2.0, 1.0, 1.0)
+        )
     (kept,) = caught.value.kept
     assert (kept["part"], kept["reasons"][0]["kind"]) == (0, "border")
     assert kept["reasons"][0]["place"][0] == pytest.approx(3.0)
@@ -94,6 +99,7 @@ def test_seams_are_welded_up_to_the_distance() -> None:
     assert result.kept_faces == 0
     assert clean["n_seam_welded"] > 0
     assert 0 < clean["weld_distance"] < 4e-6
+    wanted: dict[str, Any] = {"faces": 100, "primitive": "quad-sphere"}
     for weld in (None, 1e-9):
         with pytest.raises(orbflow_native.InputError, match="welded"):
-            orbflow_native.remesh(soup, loop_start, corners, faces=100, weld=weld)
+            orbflow_native.remesh(soup, loop_start, corners, weld=weld, **wanted)

@@ -11,11 +11,11 @@ from conftest import FIXTURES
 from test_operator import Open, addon, arrays, press, select
 
 
-def refused(thing: Any) -> str:  # noqa: ANN401
+def refused(thing: Any, **settings: Any) -> str:  # noqa: ANN401
     """Presses the button, sees that nothing changed, and returns the text of the error."""
     before, data, users = arrays(thing), thing.data, thing.data.users
     with pytest.raises(RuntimeError) as caught:
-        press.orbflow_remesh()
+        press.orbflow_remesh(**settings)
     assert (arrays(thing), thing.data, thing.data.users) == (before, data, users)
     return str(caught.value)
 
@@ -53,21 +53,22 @@ def test_no_error_stops_the_others(
 
 
 @pytest.mark.parametrize(
-    ("prefix", "text"),
+    ("prefix", "primitive", "text"),
     [
-        ("05", "1 border loop, "),
-        ("06", "genus 1"),
-        ("07", "the mesh has no faces (0 vertices)"),
+        ("05", "QUAD_SPHERE", "the quad-sphere primitive has no borders; choose flow"),
+        ("06", "QUAD_SPHERE", "genus 1: the quad-sphere primitive has no handles; choose flow"),
+        ("07", "AUTO", "the mesh has no faces (0 vertices)"),
     ],
 )
 def test_what_cannot_be_done_is_said_and_left_alone(
-    open_fixture: Open, prefix: str, text: str
+    open_fixture: Open, prefix: str, primitive: str, text: str
 ) -> None:
     thing = open_fixture(prefix)
     given = addon("mesh_arrays").read(thing.data)
+    name = None if primitive == "AUTO" else primitive.lower().replace("_", "-")
     with pytest.raises(orbflow_native.InputError) as caught:
-        orbflow_native.remesh(given.positions, given.loop_start, given.corner_vert)
-    told = refused(thing)
+        orbflow_native.remesh(given.positions, given.loop_start, given.corner_vert, primitive=name)
+    told = refused(thing, primitive=primitive)
     assert text in told
     assert str(caught.value) in told
 

@@ -14,6 +14,8 @@ from sidebar import panel_of
 from test_operator import Open, addon, press, select
 
 Reason = dict[str, Any]
+ALONE = ", which this primitive cannot have: choose Automatic"
+HOLES = f"(open edges){ALONE}, or fill all borders"
 
 
 def reason(kind: str, text: str, thing: Any, **more: Any) -> Reason:  # noqa: ANN401
@@ -50,7 +52,7 @@ def refuse(monkeypatch: pytest.MonkeyPatch) -> Callable[..., str]:
 
 def rows(thing: Any) -> list[str]:  # noqa: ANN401
     """What the panel says between the button and the boxes to tick."""
-    texts = [text for text, _ in panel_of(thing).drawn]
+    texts = [text for text, _ in panel_of(thing, width=1200).drawn]
     start = texts.index("MOD_REMESH object.orbflow_remesh") + 1
     return texts[start : texts.index("show_irregular")]
 
@@ -79,8 +81,8 @@ def test_a_refusal_stays_until_the_mesh_changes(
     half = open_fixture("05")
     exact = "1 border loop, the first through vertex 3"
     told = refuse(reason("border", exact, half, edges=border(half), n_loops=1))
-    assert f"{half.name}: has 1 hole (open edges) \nIn exact words: {exact}" in told
-    said = [f"CANCEL {half.name} was left as it was", "DOT has 1 hole (open edges)", "NONE Show"]
+    assert f"{half.name}: has 1 hole {HOLES} \nIn exact words: {exact}" in told
+    said = [f"CANCEL {half.name} was left as it was", f"DOT has 1 hole {HOLES}", "NONE Show"]
     assert rows(half) == said
     half.name = "Renamed"
     assert rows(half)[1:] == said[1:]
@@ -102,10 +104,10 @@ def test_all_reasons_are_told_in_the_words_of_artists(
         reason("flat", "no volume", thing),
         reason("failed", "no map was found", thing),
     )
-    layout = panel_of(thing, width=1000)
+    layout = panel_of(thing, width=1200)
     assert [text for text, _ in layout.drawn if text.startswith("DOT ")] == [
-        "DOT has 2 holes (open edges)",
-        "DOT has a hole through it like a ring or cup handle",
+        f"DOT has 2 holes {HOLES}",
+        f"DOT has a hole through it like a ring or cup handle{ALONE}",
         "DOT inside and outside cannot be told apart (like a Moebius strip)",
         "DOT is flat",
         "DOT could not be done: no map was found",
@@ -122,12 +124,12 @@ def test_every_part_has_a_row_until_these_are_many(
     thing = open_fixture("03")
     hole = reason("border", "1 border loop", thing, n_loops=1)
     refuse(hole, n_parts=2)
-    shown = [text for text, _ in panel_of(thing, width=1000).drawn if "hole" in text]
-    assert shown == ["DOT part of 120 faces: has 1 hole (open edges)"] * 2
+    shown = [text for text, _ in panel_of(thing, width=1200).drawn if "hole" in text]
+    assert shown == [f"DOT part of 120 faces: has 1 hole {HOLES}"] * 2
     told = refuse(hole, reason("flat", "no volume", thing), n_parts=1200)
-    assert f"{thing.name}: 1,200 parts with holes (open edges); 1,200 parts flat" in told
-    shown = [text for text, _ in panel_of(thing, width=1000).drawn if " parts" in text]
-    assert shown == ["DOT 1,200 parts with holes (open edges)", "DOT 1,200 parts flat"]
+    assert f"{thing.name}: 1,200 parts with holes {HOLES}; 1,200 parts flat" in told
+    shown = [text for text, _ in panel_of(thing, width=1200).drawn if " parts" in text]
+    assert shown == [f"DOT 1,200 parts with holes {HOLES}", "DOT 1,200 parts flat"]
 
 
 def test_show_selects_edges_and_reveals_them_and_their_faces_alone(
@@ -246,7 +248,7 @@ def test_the_parts_that_stay_are_found_in_the_result(open_fixture: Open) -> None
 @pytest.mark.parametrize(
     ("prefix", "told", "n_faces_at"),
     [
-        ("05", "has 1 hole (open edges)", {1}),
+        ("05", f"has 1 hole {HOLES}", {1}),
         ("06", "has a hole through it like a ring or cup handle", {2}),
     ],
 )
@@ -255,7 +257,7 @@ def test_the_core_names_the_spot_that_show_selects(
 ) -> None:
     thing = open_fixture(prefix)
     with pytest.raises(RuntimeError, match="In exact words: "):
-        press.orbflow_remesh()
+        press.orbflow_remesh(primitive="QUAD_SPHERE")
     assert " ".join(text.split(" ", 1)[1] for text in rows(thing)).startswith(
         f"{thing.name} was left as it was {told}"
     )
@@ -278,9 +280,9 @@ def test_a_part_that_stays_is_shown_where_it_lies_in_the_result(open_fixture: Op
     select(half, ball)
     bpy.ops.object.join()
     n_stay = len(border(half))
-    assert press.orbflow_remesh(faces=200) == {"FINISHED"}
-    shown = [text for text, _ in panel_of(half, width=1000).drawn if "hole" in text]
-    assert shown[0] == "DOT part of 640 faces: has 1 hole (open edges)"
+    assert press.orbflow_remesh(faces=200, primitive="QUAD_SPHERE") == {"FINISHED"}
+    shown = [text for text, _ in panel_of(half, width=1200).drawn if "hole" in text]
+    assert shown[0] == f"DOT part of 640 faces: has 1 hole {HOLES}"
     assert press.orbflow_show(name=half.name, row=0) == {"FINISHED"}
     edges, _, _ = selected(half)
     bpy.ops.object.mode_set(mode="OBJECT")

@@ -9,6 +9,7 @@ from sidebar import panel_of
 from test_operator import Open, addon, press, select
 
 Report = dict[str, Any]
+HOLES = "(open edges), which this primitive cannot have: choose Automatic, or fill all borders"
 
 
 def texts(thing: Any) -> list[str]:  # noqa: ANN401
@@ -141,16 +142,16 @@ def test_parts_that_were_left_are_told_of_with_their_reasons(
     more_told("First", {"kept": kept})
     press.orbflow_remesh(faces=200)
     told = [
-        "1 of 4 parts left as they were: has 2 holes (open edges)",
+        f"1 of 4 parts left as they were: has 2 holes {HOLES}",
         "2 of 4 parts left out: 2 too small for this face count",
     ]
     out = capfd.readouterr().out
     assert out.startswith("Warning: ") or "\nWarning: " in out
     assert "; ".join(told) in out
-    layout = panel_of(first, width=1000)
+    layout = panel_of(first, width=1200)
     shown = [text for text, _ in layout.drawn]
     assert after(shown, "ERROR 1 of 4 parts left as they were; 2 of 4 parts left out")[1:5] == [
-        "DOT part of 120 faces: has 2 holes (open edges)",
+        f"DOT part of 120 faces: has 2 holes {HOLES}",
         "NONE Show",
         "DOT part of 120 faces: is too small for this face count; left out",
         "DOT part of 120 faces: is too small for this face count; left out",
@@ -201,6 +202,8 @@ def test_settings_that_change_nothing_are_grey(open_fixture: Open) -> None:
         drawn = panel_of(first).drawn
         return {name for name, row in drawn if not row.active} - {"show_crosses"}
 
+    assert grey() == {"fill_size"}
+    settings.borders = "FILL"
     assert grey() == set()
     settings.kind = "TRIANGLES"
     assert grey() == {"follow_shape", "adaptivity", "density", "mirror"}

@@ -274,10 +274,11 @@ fn tell(place: &Place, report: &clean::Report) {
     }
 }
 
-/// Says what had to be mended in the input, which parts are as they were, and what is not as it was
-/// to be in the result.
+/// Says what had to be mended in the input, what was filled, which parts are as they were, and what
+/// is not as it was to be in the result.
 fn tell_all(place: &Place, report: &pipeline::Report) {
     tell(place, &report.clean);
+    parts::tell_filled(place, &report.parts);
     parts::tell(place, &report.kept);
     for warning in &report.warnings {
         eprintln!("{place}: warning: {}", warning.text);

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use clap::builder::{PossibleValuesParser, TypedValueParser, ValueParser};
 use orbflow_geometry::mesh::io::Format;
 use orbflow_geometry::pipeline::{
-    Kind, MAX_FACES, MAX_WELD, MIN_FACES, Mirror, Primitive, SmallParts,
+    Borders, Kind, MAX_FACES, MAX_FILL, MAX_WELD, MIN_FACES, Mirror, Primitive, SmallParts,
 };
 
 use crate::parts::Weld;
@@ -64,6 +64,16 @@ pub fn weld(text: &str) -> Result<Weld, String> {
         return Ok(Weld(None));
     }
     up_to(text, MAX_WELD).map(|share| Weld(Some(share)))
+}
+
+/// Reads what becomes of borders.
+pub fn borders(text: &str) -> Result<Borders, String> {
+    match text.split_once(':') {
+        None if text == "keep" => Ok(Borders::Keep),
+        None if text == "fill" => Ok(Borders::Fill),
+        Some(("fill", size)) => up_to(size, MAX_FILL).map(Borders::FillUpTo),
+        _ => Err("it is keep, fill, or fill:SIZE".to_owned()),
+    }
 }
 
 /// A parser of what becomes of small parts.

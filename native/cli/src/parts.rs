@@ -1,9 +1,11 @@
 //! What is asked for about the parts of a mesh, and what is told of those that were not remeshed.
 
 use clap::Args;
-use orbflow_geometry::pipeline::{Flaw, Kept, Outcome, Reason, Settings, SmallParts};
+use orbflow_geometry::pipeline::{
+    Borders, Flaw, Kept, Outcome, PartReport, Reason, Settings, SmallParts,
+};
 
-use crate::parsers::{percent, small_parts, weld};
+use crate::parsers::{borders, percent, small_parts, weld};
 use crate::place::Place;
 
 /// The most lines about single parts.
@@ -19,6 +21,10 @@ pub struct OfParts {
     /// those whose share of the faces is too few to close them
     #[arg(long, value_name = "PERCENT", default_value_t = Settings::default().small_size, value_parser = percent)]
     pub small_size: f64,
+    /// What becomes of borders: they stay as lines of edges of the result, or are filled, all of them
+    /// or those no longer than so many percent of the mesh's diagonal, 1000 at most
+    #[arg(long, value_name = "keep|fill|fill:SIZE", default_value = "keep", value_parser = borders)]
+    pub borders: Borders,
     /// Weld borders that lie on each other up to a gap of this share of the mesh's diagonal, 0.01 at
     /// most; off: weld equal points alone
     #[arg(long, value_name = "D|off", default_value = "1e-5", value_parser = weld)]
@@ -39,6 +45,7 @@ impl OfParts {
         Settings {
             small_parts: self.small_parts,
             small_size: self.small_size,
+            borders: self.borders,
             weld: self.weld.0,
             strict: self.strict,
             ..settings.clone()
@@ -50,6 +57,15 @@ impl OfParts {
 pub fn tell(place: &Place, kept: &[Kept]) {
     for line in lines(kept, "left as before") {
         eprintln!("{place}: {line}");
+    }
+}
+
+/// Says on standard error how many borders were filled, if any.
+pub fn tell_filled(place: &Place, parts: &[PartReport]) {
+    let opened = parts.iter().filter_map(|part| part.opened);
+    let n_filled = opened.map(|opened| opened.n_filled).sum();
+    if n_filled > 0 {
+        eprintln!("{place}: {} filled", count(n_filled, "border"));
     }
 }
 

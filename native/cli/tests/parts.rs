@@ -38,8 +38,8 @@ fn parts_that_stay_are_named_with_reason_and_place() {
     assert_eq!(done.code, 0, "{}", done.err);
     let lines: Vec<&str> = done.err.lines().collect();
     assert!(
-        lines[0].contains("scrap.obj: part 1 (1 face): 1 border loop, 3 border edges: ")
-            && lines[0].ends_with(", at (3.25, 0, 0)"),
+        lines[0].contains("scrap.obj: part 1 (1 face): the faces use 3 different points; ")
+            && lines[0].ends_with(", at (3, 0, 0)"),
         "{lines:?}"
     );
     assert!(
@@ -49,7 +49,7 @@ fn parts_that_stay_are_named_with_reason_and_place() {
     );
     let text = fs::read_to_string(&report).unwrap();
     let report: Value = serde_json::from_str(&text).unwrap();
-    assert_eq!(report["kept"][0]["reasons"][0]["kind"], "border");
+    assert_eq!(report["kept"][0]["reasons"][0]["kind"], "flat");
     assert_eq!(report["kept"][0]["outcome"], "kept");
     assert_eq!(report["settings"]["weld"], 1e-5);
     let text = fs::read_to_string(&output).unwrap();
@@ -58,7 +58,7 @@ fn parts_that_stay_are_named_with_reason_and_place() {
     assert_eq!(strict.code, 3);
     assert!(strict.err.starts_with("orbflow: "), "{}", strict.err);
     assert!(strict.err.lines().all(|line| line.contains("scrap.obj: ")));
-    assert!(strict.err.contains("1 border loop, 3 border edges"));
+    assert!(strict.err.contains("the faces use 3 different points"));
 }
 
 #[test]
@@ -69,7 +69,7 @@ fn many_reasons_are_cut_and_small_parts_are_one_line() {
     let remesh = ["remesh", &input, &output, "--faces", "100"];
     let done = run(&remesh);
     assert_eq!((done.code, done.err.lines().count()), (0, 22));
-    assert!(done.err.contains("and 40 reasons more"), "{}", done.err);
+    assert!(done.err.contains("and 10 reasons more"), "{}", done.err);
     assert!(done.err.contains("30 parts with 30 faces cannot be done"));
     let small = ["--small-size", "1", "--small-parts", "drop", "--strict"];
     let done = run(&[&remesh[..], &small].concat());
@@ -119,8 +119,10 @@ fn seams_are_welded_and_told() {
     assert_eq!(done.code, 0, "{}", done.err);
     let told = "seams.obj: 16 border points welded across gaps of up to ";
     assert!(done.err.contains(told), "{}", done.err);
+    // The six sides have borders, which this primitive has not.
+    let sphere = ["--primitive", "quad-sphere", "--weld"];
     for weld in ["off", "1e-9"] {
-        let refused = run(&[&remesh[..], &["--weld", weld]].concat());
+        let refused = run(&[&remesh[..], &sphere, &[weld]].concat());
         assert_eq!(refused.code, 3);
         assert!(refused.err.contains("welded"), "{}", refused.err);
         assert_eq!(refused.err.lines().count(), 7);
@@ -134,6 +136,9 @@ fn wrong_sizes_are_wrong_usage() {
         ("--weld", "on", "invalid"),
         ("--small-size", "101", "0 to 100"),
         ("--small-parts", "eat", "keep, drop"),
+        ("--borders", "eat", "keep, fill, or fill:SIZE"),
+        ("--borders", "fill:1001", "0 to 1000"),
+        ("--borders", "fill:all", "invalid"),
     ] {
         let refused = run(&["remesh", "-", "-", name, value]);
         assert_eq!(refused.code, 2, "{name}");

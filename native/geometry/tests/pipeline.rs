@@ -177,12 +177,16 @@ fn what_cannot_be_done_is_said_with_numbers() {
     let mut faces: Vec<_> = closed.faces().iter().map(|f| f.map(|v| v.0)).collect();
     faces.truncate(faces.len() - 2);
     let open = PolygonMesh::from_faces(closed.positions().to_vec(), &faces).unwrap();
-    let found = message(&open, &quads);
+    let sphere = Settings {
+        primitive: Some(Primitive::QuadSphere),
+        ..quads.clone()
+    };
+    let found = message(&open, &sphere);
     assert!(
         found.starts_with("1 border loop, 4 border edges: "),
         "{found}"
     );
-    let found = message(&common::polygons(&common::torus(8, 6)), &quads);
+    let found = message(&common::polygons(&common::torus(8, 6)), &sphere);
     assert!(found.starts_with("genus 1: "), "{found}");
     let wrong = Settings {
         primitive: Some(Primitive::Icosphere),

@@ -197,6 +197,8 @@ def remesh(
     mirror: str = "auto",
     small_parts: str = "keep",
     small_size: float = 0.0,
+    borders: str = "keep",
+    fill_size: float | None = None,
     weld: float | None = 1e-5,
     strict: bool = False,
     predictor: str = "auto",

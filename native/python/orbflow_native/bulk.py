@@ -57,6 +57,8 @@ def remesh(
     mirror: str = "auto",
     small_parts: str = "keep",
     small_size: float = 0.0,
+    borders: str = "keep",
+    fill_size: float | None = None,
     weld: float | None = 1e-5,
     strict: bool = False,
     predictor: str = "auto",
@@ -92,7 +94,9 @@ def remesh(
     the report's `kept` says why and where; a `strict` run raises instead. Parts too small for
     their share of the faces, or smaller than `small_size` percent of the mesh's diagonal, stay or
     go: `small_parts` is "keep" or "drop". Borders that lie on each other are welded up to a gap of
-    `weld` times the diagonal; `None` welds equal points alone.
+    `weld` times the diagonal; `None` welds equal points alone. The others stay, as lines of edges
+    of the result, or are filled: `borders` is "keep" or "fill"; with `fill_size`, from 0 to 1000,
+    those alone are filled that are no longer than so many percent of the diagonal.
     Edges of the result that lie on `carried_edges` (E, 2) are told, so that what is marked on
     these can be carried over. `cut_edges` are edges (E, 2) along which data on corners is cut as
     texture coordinates are along seams, a list with a set of them for each way in which data is
@@ -126,6 +130,8 @@ def remesh(
         mirror=mirror,
         small_parts=small_parts,
         small_size=small_size,
+        borders=borders,
+        fill_size=fill_size,
         weld=weld,
         strict=strict,
         predictor=predictor,

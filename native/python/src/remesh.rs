@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 use numpy::{PyArray1, PyArray2, PyArray3};
-use orbflow_geometry::pipeline::{self, Input, Settings, Style};
+use orbflow_geometry::pipeline::{self, Borders, Input, Settings, Style};
 use orbflow_geometry::score;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::arrays::{self, MeshArrays};
@@ -59,7 +60,8 @@ pub struct Remeshed {
 /// report's `kept` says why; a `strict` run raises instead. Parts too small for their share of the
 /// faces, or smaller than `small_size` percent of the diagonal, stay or go: `small_parts` is "keep" or
 /// "drop". Borders that lie on each other are welded up to a gap of `weld` times the diagonal; `None`
-/// welds equal points alone.
+/// welds equal points alone. The others stay or are filled: `borders` is "keep" or "fill"; with
+/// `fill_size` those alone are that are no longer than so many percent of the diagonal.
 /// `predictor` is "auto", "network" or "solver": auto takes the network for maps of 20,000 vertices or
 /// more, else the solver. The network has the wheel's weights, or `weights`: the bytes of a file that
 /// `orbflow train` wrote, or its path. `n_crosses` is how many crosses of the field to tell at most.
@@ -72,7 +74,7 @@ pub struct Remeshed {
 #[pyo3(signature = (
     positions, loop_start, corner_vert, *, faces=2000, kind="quads", primitive=None,
     follow_shape=0.5, adaptivity=0.5, sharp_angle=40.0, mirror="auto", small_parts="keep",
-    small_size=0.0, weld=1e-5, strict=false, predictor="auto",
+    small_size=0.0, borders="keep", fill_size=None, weld=1e-5, strict=false, predictor="auto",
     weights=None, threads=0, seed=0, scale=None, score_samples=10_000, n_crosses=0,
     material_index=None, marked_edges=None, carried_edges=None, cut_edges=None, density=None,
     reduced=None, progress=None, cancel=None,
@@ -95,6 +97,8 @@ pub fn remesh<'py>(
     mirror: &str,
     small_parts: &str,
     small_size: f64,
+    borders: &str,
+    fill_size: Option<f64>,
     weld: Option<f64>,
     strict: bool,
     predictor: &str,
@@ -147,6 +151,7 @@ pub fn remesh<'py>(
         mirror: report::choice("mirror", mirror)?,
         small_parts: report::choice("small_parts", small_parts)?,
         small_size,
+        borders: self::borders(borders, fill_size)?,
         weld,
         strict,
         seed,
@@ -173,6 +178,18 @@ pub fn remesh<'py>(
     })?;
     remeshed.report.kept = errors::unscaled(&remeshed.report.kept, scale);
     Remeshed::new(py, &remeshed, scale)
+}
+
+/// What becomes of borders, by a word and a size.
+fn borders(word: &str, fill_size: Option<f64>) -> PyResult<Borders> {
+    match (word, fill_size) {
+        ("keep", _) => Ok(Borders::Keep),
+        ("fill", None) => Ok(Borders::Fill),
+        ("fill", Some(size_pct)) => Ok(Borders::FillUpTo(size_pct)),
+        _ => Err(PyValueError::new_err(format!(
+            "borders: unknown variant `{word}`, expected `keep` or `fill`"
+        ))),
+    }
 }
 
 impl Remeshed {

@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use super::borders::SphereAlone;
 use super::kept::{Flaw, Reason, count};
 use super::split::Part;
 use super::{Settings, handle};
@@ -11,15 +12,15 @@ use crate::mesh::{FaceId, HalfedgeId, Id, PolygonMesh, TriangleMesh, VertexId};
 
 /// All parts in the order of their first faces.
 ///
-/// Without `can_open` a part with borders has a reason not to be done.
+/// Where `alone` says why, a part with borders or handles has that reason not to be done.
 pub fn parts(
-    (mesh, settings, can_open): (&PolygonMesh, &Settings, bool),
+    (mesh, settings, alone): (&PolygonMesh, &Settings, SphereAlone),
     apart: &Apart,
     (component, n): (&[u32], usize),
 ) -> Vec<Part> {
     let told = Told {
         mesh,
-        can_open,
+        alone,
         reach: settings
             .weld
             .filter(|_| apart.is_open())
@@ -27,7 +28,7 @@ pub fn parts(
         shared: apart.shared.iter().flat_map(SharedLine::edges).collect(),
     };
     let mut surfaces = surfaces(apart, component, n);
-    if !can_open && surfaces.iter().any(|surface| surface.genus() != 0) {
+    if told.alone.handles.is_some() && surfaces.iter().any(|surface| surface.genus() != 0) {
         let loops = handle::loops(&apart.mesh);
         for (surface, edges) in surfaces.iter_mut().zip(loops) {
             surface.handle = edges.iter().map(|e| e.map(|v| apart.origin[v])).collect();
@@ -116,8 +117,8 @@ impl Surface {
 /// Puts what was found in words.
 struct Told<'a> {
     mesh: &'a PolygonMesh,
-    /// Whether a part with borders can be done.
-    can_open: bool,
+    /// Why a part with borders or handles cannot be done, if so.
+    alone: SphereAlone,
     /// Up to which gap borders were welded, where they were.
     reach: Option<f64>,
     /// The edges of more than two faces.
@@ -127,17 +128,12 @@ struct Told<'a> {
 impl Told<'_> {
     fn of_surface(&self, surface: &Surface) -> Vec<Reason> {
         let faces = &surface.faces;
-        let border = match self.can_open {
-            true => None,
-            false => self.border(faces, surface.n_loops, &surface.border),
-        };
+        let border = self.border(faces, surface.n_loops, &surface.border);
         let flat = self.flat(surface);
         let genus = surface.genus();
-        let handles = (genus != 0 && !self.can_open).then(|| {
-            let text = format!(
-                "genus {genus}: only meshes without handles (genus 0) can be done; close the \
-                 handles first"
-            );
+        let handles = self.alone.handles.as_ref().filter(|_| genus != 0);
+        let handles = handles.map(|why| {
+            let text = format!("genus {genus}: {why}");
             Reason::new(
                 self.mesh,
                 faces,
@@ -162,6 +158,7 @@ impl Told<'_> {
 
     fn border(&self, faces: &[FaceId], n_loops: usize, edges: &[[VertexId; 2]]) -> Option<Reason> {
         let n_edges = edges.len();
+        let why = self.alone.borders.as_ref().filter(|_| n_edges > 0)?;
         let is_shared = |[a, b]: &&[VertexId; 2]| self.shared.contains(&[*a.min(b), *a.max(b)]);
         let shared = match edges.iter().filter(is_shared).count() {
             0 => String::new(),
@@ -172,11 +169,9 @@ impl Told<'_> {
             Some(reach) => format!("; borders farther apart than {reach:.2e} are not welded"),
             None => "; only equal points are welded".to_owned(),
         };
-        let text = format!(
-            "{loops}, {borders}{shared}: only closed meshes can be done; fill the holes first{weld}"
-        );
+        let text = format!("{loops}, {borders}{shared}: {why}{weld}");
         let flaw = Flaw::Border { n_loops, n_edges };
-        (n_edges > 0).then(|| Reason::new(self.mesh, faces, edges, flaw, text))
+        Some(Reason::new(self.mesh, faces, edges, flaw, text))
     }
 
     fn flat(&self, surface: &Surface) -> Option<Reason> {

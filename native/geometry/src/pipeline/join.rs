@@ -17,6 +17,8 @@ pub struct Joined {
     /// The edges that lie along sharp or marked ones.
     pub features: Vec<[VertexId; 2]>,
     pub crosses: Vec<Cross>,
+    /// What borders were filled with.
+    pub filling: Vec<[DVec3; 3]>,
     pub embedding: embed::Report,
     pub parts: Vec<PartReport>,
 }
@@ -27,7 +29,7 @@ pub fn join(results: Vec<PartResult>) -> Joined {
     let embeddings: Vec<_> = results.iter().map(|r| r.report.embedding.clone()).collect();
     let mut positions = Vec::new();
     let mut sphere = Vec::new();
-    let (mut features, mut crosses) = (Vec::new(), Vec::new());
+    let (mut features, mut crosses, mut filling) = (Vec::new(), Vec::new(), Vec::new());
     let mut starts = vec![0];
     let mut corners = Vec::new();
     let mut parts = Vec::with_capacity(results.len());
@@ -50,6 +52,7 @@ pub fn join(results: Vec<PartResult>) -> Joined {
         let named = |ends: &[VertexId; 2]| ends.map(|v| VertexId(v.0 + first_vertex));
         features.extend(result.features.iter().map(named));
         crosses.extend(result.crosses);
+        filling.extend(result.filling);
         parts.push(result.report);
     }
     let mesh = PolygonMesh::new(positions, starts, corners).expect("valid meshes make a valid one");
@@ -58,6 +61,7 @@ pub fn join(results: Vec<PartResult>) -> Joined {
         sphere,
         features,
         crosses,
+        filling,
         embedding: join_embeddings(&embeddings, &areas),
         parts,
     }

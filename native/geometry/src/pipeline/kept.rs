@@ -55,7 +55,7 @@ pub struct Reason {
 #[derive(Clone, Copy, PartialEq, Debug, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Flaw {
-    /// It has borders.
+    /// It has borders, and what is to be made of it can have none.
     Border {
         /// How many loops.
         n_loops: usize,

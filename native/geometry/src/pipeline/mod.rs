@@ -5,11 +5,13 @@
 //!                                                └──────── target ───────▶ deform ┴─ join ─▶ transfer ─▶ polygons
 //! ```
 //!
-//! Every part that is a closed component of genus 0 gets its share of the faces by area; the others
-//! stay as they were. The map is made on a decimated mesh; the result is laid on the part at full
+//! Every part that is a surface of two sides gets its share of the faces by area; the others stay as
+//! they were. One with borders or handles is closed before it is decimated and opened again once it
+//! has its faces (`open`). The map is made on a decimated mesh; the result is laid on the part at full
 //! resolution.
 
 mod attempt;
+mod borders;
 mod carried;
 mod clock;
 mod crosses;
@@ -46,6 +48,7 @@ mod ways;
 
 pub use crate::transfer::CarriedEdge;
 pub use attempt::Attempt;
+pub use borders::{Borders, Closure, MAX_FILL, Opened};
 pub use carried::CarriedReport;
 pub use clock::{Step, peak_memory_mb};
 pub use crosses::Cross;
@@ -57,7 +60,7 @@ pub use origins::{Origin, Origins};
 pub use paired::Instead;
 pub use report::{Mirrored, PartReport, Reduced, Report};
 pub use scored::score;
-pub use settings::{Borders, Kind, MAX_FACES, MIN_FACES, Primitive, Settings, Style};
+pub use settings::{Kind, MAX_FACES, MIN_FACES, Primitive, Settings, Style};
 pub use small::{MAX_WELD, SmallParts};
 pub use verbs::{Decimated, EmbedReport, EmbeddedParts, decimate, embed};
 pub use warning::{Fault, Warning};

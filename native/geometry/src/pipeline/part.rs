@@ -66,6 +66,8 @@ pub struct PartResult {
     /// The edges that lie along sharp or marked ones.
     pub features: Vec<[VertexId; 2]>,
     pub crosses: Vec<Cross>,
+    /// What borders were filled with.
+    pub filling: Vec<[DVec3; 3]>,
     /// The area of the part, the weight of its figures.
     pub area: f64,
     pub report: PartReport,
@@ -101,9 +103,16 @@ impl PartJob<'_> {
         let n_asked = wanted.n_faces;
         let (n_input_faces, area) = (part.n_faces(), measure::total_area(&part));
         let closing = Closing::new(&part, (wanted.settings, n_asked), progress)?;
-        let (part, wanted) = match &closing {
-            Some(closing) => (closing.mesh().clone(), wanted.of_closed(&part, closing)),
-            None => (part, wanted),
+        let opened = closing.as_ref().and_then(Closing::told);
+        let filling = closing.as_ref().map(Closing::filling).unwrap_or_default();
+        let (part, closing) = match closing {
+            Some(closing) if closing.is_filled() => (closing.into_mesh(), None),
+            Some(closing) => (closing.mesh().clone(), Some(closing)),
+            None => (part, None),
+        };
+        let wanted = match &closing {
+            Some(closing) => wanted.of_closed(closing),
+            None => wanted,
         };
         let (marked, density) = (wanted.marks.on(&part), wanted.density.on(&part));
         let Faced {
@@ -154,6 +163,7 @@ impl PartJob<'_> {
             n_faces: made.deformed.mesh.n_faces(),
             reduced: reduction.reduced,
             decimate: reduction.report,
+            opened,
             embedding,
             flow: made.flow,
             mirrored: refused.or(made.mirrored),
@@ -165,6 +175,7 @@ impl PartJob<'_> {
             sphere: made.deformed.sphere,
             features: made.deformed.features,
             crosses: made.crosses,
+            filling,
             area,
             report,
         })
@@ -207,9 +218,10 @@ impl Wanted<'_> {
     }
 
     /// What is to be made of a part that was closed: the faces of what is virtual are made too.
-    fn of_closed(self, open: &TriangleMesh, closing: &Closing) -> Self {
-        let [open, closed] = [open, closing.mesh()].map(|mesh| self.density.amount(mesh));
-        let n_faces = (self.n_faces as f64 * closed / open.max(f64::MIN_POSITIVE)).round();
+    fn of_closed(self, closing: &Closing) -> Self {
+        let [real, closed] =
+            [&closing.real(), closing.mesh()].map(|mesh| self.density.amount(mesh));
+        let n_faces = (self.n_faces as f64 * closed / real.max(f64::MIN_POSITIVE)).round();
         Self {
             n_faces: (n_faces as usize).max(self.n_faces),
             ..self

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::borders::Opened;
 use super::carried::CarriedReport;
 use super::clock::Step;
 use super::flowed::Flowed;
@@ -61,6 +62,8 @@ pub struct PartReport {
     pub reduced: Option<Reduced>,
     /// How it was reduced before the embedding; none when it was small enough.
     pub decimate: Option<decimate::Report>,
+    /// What became of its borders; none where it had none.
+    pub opened: Option<Opened>,
     /// Its embedding.
     pub embedding: embed::Report,
     /// Whether its quads flow; none when that was not asked for.

@@ -12,14 +12,14 @@ use super::split::Parts;
 use super::warning::{Made, Warning, warnings};
 use super::{Error, Report, Settings};
 use crate::clean;
-use crate::measure::topology_of_triangles;
+use crate::measure::{Topology, topology_of_triangles};
 use crate::mesh::{PolygonMesh, VertexId};
 use crate::progress::{Cancelled, Progress};
 use crate::score::{self, Reference, Score};
 
 /// A result and what it is measured against.
 struct Judging<'a> {
-    /// The parts of the input that were to be rebuilt, as they came.
+    /// The parts of the input that were to be rebuilt, as they came, and what fills their borders.
     input: &'a PolygonMesh,
     prepared: &'a Prepared,
     /// The marked edges of a mesh.
@@ -51,8 +51,10 @@ pub fn judge(
     (settings, clock, progress): (&Settings, &mut Clock, &Progress<'_>),
 ) -> Result<Judged, Cancelled> {
     let done = parts.done_alone(given);
+    let done = done.as_ref().unwrap_or(given);
+    let filled = filled(done, prepared, joined);
     let judging = Judging {
-        input: done.as_ref().unwrap_or(given),
+        input: filled.as_ref().unwrap_or(done),
         prepared,
         marked,
         output,
@@ -101,9 +103,22 @@ impl Judging<'_> {
     ) -> Result<Score, score::Error> {
         let reference = Reference {
             mesh: self.input,
-            topology: Some(topology_of_triangles(&self.prepared.mesh)),
+            topology: Some(self.topology()),
         };
         score::score(reference, self.output, wanted, progress)
+    }
+
+    /// How the input hangs together once its borders are filled that were to be.
+    fn topology(&self) -> Topology {
+        let came = topology_of_triangles(&self.prepared.mesh);
+        let opened = self.joined.parts.iter().filter_map(|part| part.opened);
+        let n_filled: usize = opened.map(|opened| opened.n_filled).sum();
+        let n_borders = came.n_borders.saturating_sub(n_filled);
+        Topology {
+            closed: n_borders == 0,
+            n_borders,
+            ..came
+        }
     }
 
     /// The share of the marked edges that no edge lies along.
@@ -112,6 +127,25 @@ impl Judging<'_> {
         let marked = Marked::new(mesh, &Marks::new(self.marked, frame).on(mesh));
         marked.lost((&self.joined.mesh, &self.joined.features), progress)
     }
+}
+
+/// A mesh with what fills its borders, in corners of its own; none where nothing does.
+fn filled(mesh: &PolygonMesh, prepared: &Prepared, joined: &Joined) -> Option<PolygonMesh> {
+    if joined.filling.is_empty() {
+        return None;
+    }
+    let mut positions = mesh.positions().to_vec();
+    let first = positions.len() as u32;
+    positions.extend(prepared.frame.leave(joined.filling.as_flattened()));
+    let more = (first..positions.len() as u32).map(VertexId);
+    let mut corners = mesh.corners().to_vec();
+    let n_before = corners.len() as u32;
+    corners.extend(more);
+    let n_more = joined.filling.len() as u32;
+    let starts = mesh.starts().iter().copied();
+    let starts = starts.chain((1..=n_more).map(|i| n_before + 3 * i));
+    let filled = PolygonMesh::new(positions, starts.collect(), corners);
+    Some(filled.expect("a mesh and triangles are a mesh"))
 }
 
 /// The report of a result that is sound, or of any where nobody is strict.

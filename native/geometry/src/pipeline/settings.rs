@@ -3,10 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::Error;
+use super::borders::Borders;
 use super::mirror::Mirror;
 use super::small::SmallParts;
 use crate::elementary::powf;
-use crate::{clean, close, flow, score};
+use crate::{clean, flow, score};
 
 /// The fewest faces that can be asked for: those of a tetrahedron.
 pub const MIN_FACES: usize = 4;
@@ -74,19 +75,6 @@ impl Primitive {
             Self::Flow | Self::QuadSphere => Kind::Quads,
         }
     }
-}
-
-/// What becomes of borders.
-#[derive(Clone, Copy, PartialEq, Debug, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Borders {
-    /// They stay: lines of edges of the result lie on them.
-    #[default]
-    Keep,
-    /// All are closed for good.
-    Fill,
-    /// Those are whose loops are no longer than so many percent of the whole mesh's diagonal.
-    FillUpTo(f64),
 }
 
 /// How quads flow, each from 0 to 1; the default is what most want.
@@ -228,24 +216,6 @@ impl Settings {
         })
     }
 
-    /// Whether the primitive can have borders: those that are the same for all shapes have none.
-    pub(super) fn can_open(&self) -> bool {
-        matches!(self.primitive(), Primitive::Flow | Primitive::Adaptive)
-    }
-
-    /// How borders are closed, where the diagonal measures 1.
-    pub(super) fn close(&self) -> close::Settings {
-        let fill = match self.borders {
-            Borders::Keep => close::Fill::None,
-            Borders::Fill => close::Fill::All,
-            Borders::FillUpTo(size_pct) => close::Fill::UpTo(size_pct / 100.0),
-        };
-        close::Settings {
-            fill,
-            ..close::Settings::default()
-        }
-    }
-
     /// What the flow of so many quads is asked for.
     pub(super) fn flow(&self, n_quads: usize) -> flow::Settings {
         flow::Settings {
@@ -270,6 +240,7 @@ impl Settings {
         check_faces(self.faces)?;
         self.style.check()?;
         self.check_sizes()?;
+        self.check_borders()?;
         let degrees = self.sharp_angle;
         if !(0.0..=180.0).contains(&degrees) {
             return Err(Error::AngleOutOfRange { degrees });

@@ -1,12 +1,12 @@
 //! Takes the input apart and says what is done with every part: the one place that does.
 //!
-//! A part is what hangs together over edges. One that is closed and has no handles is remeshed; any
-//! other stays as it was, with every reason, and so do parts too small for their share. Filling
-//! borders and cutting handles belong here: they turn a part into closed ones with tagged faces,
-//! which `join` takes out again.
+//! A part is what hangs together over edges. One that is a surface of two sides is remeshed, where
+//! the settings allow its borders; any other stays as it was, with every reason, and so do parts too
+//! small for their share. Closing borders belongs to the run of a part (`open`).
 
 use std::collections::HashMap;
 
+use super::borders::SphereAlone;
 use super::density::Density;
 use super::frame::{Frame, bits};
 use super::kept::{Flaw, Kept, Outcome, Reason};
@@ -52,7 +52,7 @@ impl Parts {
     ) -> Result<(Self, Cleaned), Error> {
         let (component, n) = apart.mesh.face_components();
         let mut parts = diagnosis::parts(
-            (input.mesh, settings, settings.can_open()),
+            (input.mesh, settings, settings.sphere_alone()),
             &apart,
             (&component, n),
         );
@@ -64,7 +64,7 @@ impl Parts {
         Self::chosen(input.mesh, apart, (&component, n), parts, settings)
     }
 
-    /// The same where every part, however small, has to be done.
+    /// The same where every part, however small, has to be done and to be closed.
     ///
     /// # Errors
     /// As above.
@@ -73,8 +73,13 @@ impl Parts {
             strict: true,
             ..Settings::default()
         };
+        let why = |what| Some(format!("only meshes without {what} can be embedded"));
+        let alone = SphereAlone {
+            borders: why("borders"),
+            handles: why("handles"),
+        };
         let (component, n) = apart.mesh.face_components();
-        let parts = diagnosis::parts((mesh, &settings, false), &apart, (&component, n));
+        let parts = diagnosis::parts((mesh, &settings, alone), &apart, (&component, n));
         let chosen = Self::chosen(mesh, apart, (&component, n), parts, &settings);
         chosen.map(|(_, cleaned)| cleaned)
     }

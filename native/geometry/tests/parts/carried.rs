@@ -6,7 +6,7 @@ use orbflow_geometry::mesh::{Id, PolygonMesh, VertexId};
 use orbflow_geometry::pipeline::{self, Input, Origins, Remeshed};
 use orbflow_geometry::progress::Progress;
 
-use super::mixed::{Mixed, cube, settings};
+use super::mixed::{Mixed, cube, sphere};
 use super::stays;
 
 /// How many corners and vertices the two faces beside the box have.
@@ -41,7 +41,7 @@ fn what_lies_on_kept_faces_comes_with_them() {
         cuts: Some(&[Vec::new()]),
         ..Input::new(&mesh)
     };
-    let result = pipeline::remesh(input, &settings(60), &Solver::default(), &Progress::none());
+    let result = pipeline::remesh(input, &sphere(60), &Solver::default(), &Progress::none());
     let result = result.unwrap();
     stays(&result, &mesh, [0, 1]);
     let n = result.mesh.n_faces();

@@ -8,14 +8,14 @@ mod sheets;
 
 use glam::DVec3;
 use mixed::{
-    Mixed, ball, cube, kinds, moebius_strip, remesh, settings, split_along, touching_blocks,
+    Mixed, ball, cube, kinds, moebius_strip, remesh, settings, sphere, split_along, touching_blocks,
 };
 use orbflow_geometry::embed::{OffsetPredictor, PredictError, Proposal, Solver};
 use orbflow_geometry::hierarchy::CollapseHierarchy;
 use orbflow_geometry::measure::topology;
 use orbflow_geometry::mesh::{FaceId, Id, PolygonMesh};
 use orbflow_geometry::pipeline::{
-    self, Error, Flaw, Input, Kind, Mirror, Outcome, Remeshed, Settings, SmallParts,
+    self, Borders, Error, Flaw, Input, Kind, Mirror, Outcome, Remeshed, Settings, SmallParts,
 };
 use orbflow_geometry::progress::Progress;
 use proptest::prelude::*;
@@ -65,16 +65,16 @@ fn a_stray_triangle_stays_and_the_box_is_done() {
     stays(&result, &mesh, [0]);
     let kept = &result.report.kept;
     assert_eq!((kept.len(), kept[0].part, kept[0].n_faces), (1, 0, 1));
-    assert_eq!(kinds(&kept[0]), ["border", "flat"]);
+    assert_eq!(kinds(&kept[0]), ["flat"]);
     let reason = &kept[0].reasons[0];
     assert!(
-        reason.text.starts_with("1 border loop, 3 border edges: "),
+        reason.text.starts_with("the faces use 3 different points"),
         "{}",
         reason.text
     );
     assert_eq!(
         (reason.edges.len(), reason.faces.len(), reason.place[0]),
-        (3, 1, 3.0)
+        (0, 1, 3.0)
     );
     let made = result.mesh.n_faces() - 1;
     // Of all counts only some make a cube.
@@ -89,9 +89,42 @@ fn a_stray_triangle_stays_and_the_box_is_done() {
     let (kept, text) = refused(&mesh, &strict);
     assert_eq!(kept.len(), 1);
     assert!(
-        text.starts_with("1 of 2 parts cannot be done: part 1: 1 border loop"),
+        text.starts_with("1 of 2 parts cannot be done: part 1: the faces use 3"),
         "{text}"
     );
+}
+
+#[test]
+fn borders_are_no_reason_but_for_primitives_that_have_none() {
+    let mut open = Mixed::default();
+    open.add(&ball(3), DVec3::ZERO, 1.0);
+    open.faces.pop();
+    let mesh = open.mesh();
+    let filled = Settings {
+        borders: Borders::Fill,
+        ..sphere(60)
+    };
+    let (kept, text) = refused(&mesh, &sphere(60));
+    assert_eq!(kinds(&kept[0]), ["border"]);
+    let Flaw::Border { n_loops, n_edges } = kept[0].reasons[0].flaw else {
+        panic!("{kept:?}");
+    };
+    assert_eq!(
+        (n_loops, n_edges, kept[0].reasons[0].edges.len()),
+        (1, 3, 3)
+    );
+    let words =
+        "1 border loop, 3 border edges: the quad-sphere primitive has no borders; choose flow";
+    assert!(text.starts_with(words), "{text}");
+    for wanted in [filled, settings(60)] {
+        let result = remesh(&mesh, &wanted).unwrap();
+        let found = topology(&result.mesh, &Progress::none()).unwrap();
+        let n_filled = usize::from(wanted.borders == Borders::Fill);
+        assert_eq!((found.n_borders, found.genus), (1 - n_filled, Some(0)));
+        let opened = result.report.parts[0].opened.unwrap();
+        assert_eq!((opened.n_borders, opened.n_filled), (1, n_filled));
+        assert!(result.report.kept.is_empty());
+    }
 }
 
 #[test]
@@ -103,7 +136,7 @@ fn every_reason_of_every_part_is_told_when_none_can_be_done() {
     mixed.append(&torus);
     mixed.add(&common::torus(8, 6), DVec3::X * 9.0, 1.0);
     mixed.append(&moebius_strip(DVec3::X * 20.0));
-    let (kept, text) = refused(&mixed.mesh(), &settings(100));
+    let (kept, text) = refused(&mixed.mesh(), &sphere(100));
     let all: Vec<_> = kept.iter().map(kinds).collect();
     assert_eq!(
         all,
@@ -172,7 +205,7 @@ fn parts_are_small_by_their_share_or_by_a_size() {
     let mut mixed = Mixed::default();
     mixed.add(&ball(5), DVec3::ZERO, 1.0);
     mixed.add(&ball(2), DVec3::X * 2.0, 0.3);
-    // Small and open is merely small.
+    // Small and flat is merely small.
     mixed.add_faces(
         &[[0.0, 2.0, 0.0], [0.1, 2.0, 0.0], [0.0, 2.1, 0.0]],
         &[&[0, 1, 2]],
@@ -180,7 +213,7 @@ fn parts_are_small_by_their_share_or_by_a_size() {
     let mesh = mixed.mesh();
     let many = remesh(&mesh, &settings(200)).unwrap().report;
     assert_eq!((many.parts.len(), many.kept.len()), (2, 1));
-    assert_eq!(kinds(&many.kept[0]), ["border", "flat"]);
+    assert_eq!(kinds(&many.kept[0]), ["flat"]);
     let sized = Settings {
         small_size: 25.0,
         strict: true,
@@ -188,7 +221,7 @@ fn parts_are_small_by_their_share_or_by_a_size() {
     };
     let few = remesh(&mesh, &sized).unwrap().report;
     assert_eq!((few.parts.len(), few.kept.len()), (1, 2));
-    assert_eq!(kinds(&few.kept[1]), ["border", "flat", "small"]);
+    assert_eq!(kinds(&few.kept[1]), ["flat", "small"]);
     assert!(
         few.kept[0].reasons[0].text.starts_with("it measures 2"),
         "{:?}",
@@ -297,7 +330,9 @@ fn seams_that_nearly_close_are_welded_up_to_the_distance() {
     for gap in [0.0, 1e-7, 9e-6, 3e-5] {
         let mesh = split_along(&ball(6), gap);
         let diagonal = mesh.bounds()[0].distance(mesh.bounds()[1]);
-        let result = remesh(&mesh, &settings(100));
+        // Halves that are not welded have borders, which this primitive has not.
+        let wanted = sphere(100);
+        let result = remesh(&mesh, &wanted);
         if gap > 1e-5 {
             let Err(error) = result else {
                 panic!("a gap of {gap} was welded");
@@ -319,7 +354,7 @@ fn seams_that_nearly_close_are_welded_up_to_the_distance() {
         }
         let off = Settings {
             weld: None,
-            ..settings(100)
+            ..wanted
         };
         assert_eq!(remesh(&mesh, &off).is_ok(), gap == 0.0);
     }
@@ -357,7 +392,15 @@ fn the_embedding_alone_refuses_and_the_decimation_takes_borders() {
     let mesh = mixed.mesh();
     let embedded = pipeline::embed(&mesh, 1, &Solver::default(), &Progress::none());
     match embedded {
-        Err(Error::Refused { kept, n_parts }) => assert_eq!((kept.len(), n_parts), (1, 2)),
+        Err(Error::Refused { kept, n_parts }) => {
+            assert_eq!((kept.len(), n_parts), (1, 2));
+            assert_eq!(kinds(&kept[0]), ["border", "flat"]);
+            let text = &kept[0].reasons[0].text;
+            assert!(
+                text.contains("only meshes without borders can be embedded"),
+                "{text}"
+            );
+        }
         other => panic!("{other:?}"),
     }
     let decimated = pipeline::decimate(Input::new(&mesh), 40, &Progress::none()).unwrap();

@@ -4,7 +4,7 @@ use glam::DVec3;
 use orbflow_geometry::elementary::direction;
 use orbflow_geometry::embed::Solver;
 use orbflow_geometry::mesh::{PolygonMesh, TriangleMesh};
-use orbflow_geometry::pipeline::{self, Error, Input, Kept, Remeshed, Settings};
+use orbflow_geometry::pipeline::{self, Error, Input, Kept, Primitive, Remeshed, Settings};
 use orbflow_geometry::progress::Progress;
 use orbflow_geometry::random::Random;
 
@@ -22,6 +22,14 @@ pub fn settings(faces: usize) -> Settings {
         faces,
         threads: 1,
         ..Settings::default()
+    }
+}
+
+/// The quads of a blown up box: parts with borders or handles stay.
+pub fn sphere(faces: usize) -> Settings {
+    Settings {
+        primitive: Some(Primitive::QuadSphere),
+        ..settings(faces)
     }
 }
 
@@ -76,7 +84,8 @@ impl Mixed {
             .extend(faces.map(|f| f.iter().map(|v| v + first).collect()));
     }
 
-    /// A solid and open scraps around it, their faces among each other, and which are the scraps'.
+    /// A solid and one-sided scraps around it, their faces among each other, and which are the
+    /// scraps'.
     pub fn scattered(
         solid: &TriangleMesh,
         n_scraps: usize,
@@ -89,10 +98,14 @@ impl Mixed {
         let n_solid = mixed.faces.len();
         for i in 0..n_scraps {
             let shift = DVec3::new(5.0 + 3.0 * i as f64, random.unit(), random.unit());
-            let points = [[0, 0], [1, 0], [1, 1], [0, 1], [2, 2]].map(|[x, y]| {
+            let points = [[0, 0], [1, 0], [1, 1], [0, 1], [2, 2], [0, 2]].map(|[x, y]| {
                 (shift + DVec3::new(f64::from(x), f64::from(y), random.unit())).to_array()
             });
-            mixed.add_faces(&points, &[&[0, 1, 2, 3], &[3, 2, 4]]);
+            // A moebius strip.
+            mixed.add_faces(
+                &points,
+                &[&[0, 1, 2, 3], &[3, 2, 4, 5], &[5, 4, 0], &[5, 0, 1]],
+            );
         }
         for p in &mut mixed.positions {
             *p *= size;

@@ -3,13 +3,13 @@
 use glam::DVec3;
 use orbflow_geometry::pipeline::Settings;
 
-use super::mixed::{kinds, remesh, settings, walled_box};
+use super::mixed::{kinds, remesh, sphere, walled_box};
 use super::{refused, stays};
 
 #[test]
 fn a_box_with_a_wall_is_done_and_the_wall_stays() {
     let mesh = walled_box(DVec3::ZERO).mesh();
-    let result = remesh(&mesh, &settings(100)).unwrap();
+    let result = remesh(&mesh, &sphere(100)).unwrap();
     stays(&result, &mesh, [10]);
     let report = &result.report;
     assert_eq!((report.parts.len(), report.kept.len()), (1, 1));
@@ -27,7 +27,7 @@ fn a_box_with_a_wall_is_done_and_the_wall_stays() {
     );
     let strict = Settings {
         strict: true,
-        ..settings(100)
+        ..sphere(100)
     };
     assert_eq!(refused(&mesh, &strict).0.len(), 1);
 }

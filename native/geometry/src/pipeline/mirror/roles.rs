@@ -129,6 +129,11 @@ pub fn image_of(made: &PartResult, of: usize, axis: usize) -> PartResult {
         mesh: mesh.expect("faces turned round make a mesh as before"),
         sphere: flip(&made.sphere),
         features: made.features.clone(),
+        filling: made
+            .filling
+            .iter()
+            .map(|t| t.map(|p| mirrored(p, axis)))
+            .collect(),
         crosses: made.crosses.iter().map(|c| c.mirrored(axis)).collect(),
         area: made.area,
         report,

@@ -6,6 +6,7 @@
 //!
 //! The map is made of the part reduced while it is open, which keeps borders, and closed then.
 
+mod filling;
 mod hold;
 mod loops;
 mod puncture;
@@ -16,6 +17,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
+use super::borders::Opened;
 use super::even::Marked;
 use super::part::embed_mesh;
 use super::{Error, Settings};
@@ -51,6 +53,10 @@ pub struct Closing {
     punctures: Vec<Puncture>,
     /// The shape that is to come out.
     wanted: Topology,
+    /// What is told of its borders.
+    told: Option<Opened>,
+    /// Those up to this length are filled for good.
+    asked: f64,
 }
 
 /// A part reduced to the size of the map and closed.
@@ -104,7 +110,9 @@ impl Closing {
             .iter()
             .filter(|&&length| length <= fill.asked())
             .count();
-        wanted.n_borders -= n_filled.min(wanted.n_borders);
+        let n_filled = n_filled.min(wanted.n_borders);
+        let n_borders = wanted.n_borders;
+        wanted.n_borders -= n_filled;
         wanted.closed = wanted.n_borders == 0;
         let is_puncture = |length: &f64| *length > fill.asked() && *length <= fill.all();
         let punctures = loops.closed_lines(&cut.mesh).zip(&lengths);
@@ -119,12 +127,30 @@ impl Closing {
         let closed = close::close(&cut.mesh, &settings, progress)?;
         let cuts = cut.twins.iter().map(|[one, _]| polyline(&cut.mesh, one));
         Ok(Some(Self {
-            closed,
             cuts: cuts.collect(),
             punctures,
             wanted,
+            told: Opened::new([n_borders, n_filled], closed.n_doubled > 0),
+            asked: fill.asked(),
+            closed,
             open: cut.mesh,
         }))
+    }
+
+    /// What is told of it.
+    pub fn told(&self) -> Option<Opened> {
+        self.told
+    }
+
+    /// Whether all its borders were filled for good: then nothing is opened again.
+    pub fn is_filled(&self) -> bool {
+        let n_open = self.closed.n_capped + self.closed.n_doubled + self.punctures.len();
+        n_open == 0
+    }
+
+    /// The part, closed; all of it.
+    pub fn into_mesh(self) -> TriangleMesh {
+        self.closed.mesh
     }
 
     /// The part, closed.
@@ -212,12 +238,8 @@ impl Closing {
         });
         let ends: Vec<(DVec3, DVec3)> = ends.flatten().collect();
         let folds = Marked::new(&self.closed.mesh, &folds(&self.closed));
+        let bare = self.real();
         let is_real = self.closed.is_real;
-        let faces = self.closed.mesh.face_ids();
-        let real = faces.filter(|&f| is_real[f]);
-        let real = real.map(|f| self.closed.mesh.face(f));
-        let real = TriangleMesh::of_faces(self.closed.mesh.positions(), real);
-        let (bare, _) = real.expect("the real faces of a closed part are a mesh");
         Ok(Opening {
             lines: between.into_iter().map(|line| line.line).collect(),
             ends,
