@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::crosses::Cross;
 use super::part::PartResult;
-use super::report::PartReport;
+use super::report::{PartReport, Rejoined};
 use crate::embed;
 use crate::mesh::{PolygonMesh, VertexId};
 
@@ -19,6 +19,8 @@ pub struct Joined {
     pub crosses: Vec<Cross>,
     pub embedding: embed::Report,
     pub parts: Vec<PartReport>,
+    /// Where sheets met; none where they did nowhere.
+    pub rejoined: Option<Rejoined>,
 }
 
 /// Puts the parts one after the other; one part stays as it is.
@@ -60,6 +62,7 @@ pub fn join(results: Vec<PartResult>) -> Joined {
         crosses,
         embedding: join_embeddings(&embeddings, &areas),
         parts,
+        rejoined: None,
     }
 }
 

@@ -10,9 +10,9 @@ use super::marks::Marks;
 use super::mirror::Plane;
 use super::split::Parts;
 use super::warning::{Made, Warning, warnings};
-use super::{Error, Report, Settings};
+use super::{Error, Report, Settings, meet};
 use crate::clean;
-use crate::measure::topology_of_triangles;
+use crate::measure::{Topology, topology, topology_of_triangles};
 use crate::mesh::{PolygonMesh, VertexId};
 use crate::progress::{Cancelled, Progress};
 use crate::score::{self, Reference, Score};
@@ -21,6 +21,7 @@ use crate::score::{self, Reference, Score};
 struct Judging<'a> {
     /// The parts of the input that were to be rebuilt, as they came.
     input: &'a PolygonMesh,
+    parts: &'a Parts,
     prepared: &'a Prepared,
     /// The marked edges of a mesh.
     marked: (&'a PolygonMesh, &'a [[VertexId; 2]]),
@@ -53,6 +54,7 @@ pub fn judge(
     let done = parts.done_alone(given);
     let judging = Judging {
         input: done.as_ref().unwrap_or(given),
+        parts,
         prepared,
         marked,
         output,
@@ -89,6 +91,7 @@ impl Judging<'_> {
             diagonal: self.prepared.frame.grow(DVec3::X).x,
             glance,
             lost_marks: self.lost_marks(progress)?,
+            rejoined: self.joined.rejoined,
         };
         judged.warnings = warnings(&made, settings, progress)?;
         Ok(judged)
@@ -101,9 +104,20 @@ impl Judging<'_> {
     ) -> Result<Score, score::Error> {
         let reference = Reference {
             mesh: self.input,
-            topology: Some(topology_of_triangles(&self.prepared.mesh)),
+            topology: Some(self.topology(progress)?),
         };
         score::score(reference, self.output, wanted, progress)
+    }
+
+    /// How the input hangs together, with sheets joined where they meet.
+    fn topology(&self, progress: &Progress<'_>) -> Result<Topology, Cancelled> {
+        match self.joined.rejoined {
+            Some(_) => topology(
+                &meet::whole(self.prepared, (self.marked.0, &self.parts.shared)),
+                progress,
+            ),
+            None => Ok(topology_of_triangles(&self.prepared.mesh)),
+        }
     }
 
     /// The share of the marked edges that no edge lies along.
