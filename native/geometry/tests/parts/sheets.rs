@@ -59,12 +59,6 @@ fn walls_that_meet_do_so_again_or_are_told() {
     for faces in [40, 60] {
         let result = remesh(&walls(3).mesh(), &settings(faces)).unwrap();
         let report = &result.report;
-        println!(
-            "{faces} {:?} {:?} {:?}",
-            report.rejoined,
-            report.output,
-            start.elapsed()
-        );
         let rejoined = report.rejoined.unwrap();
         assert_eq!(rejoined.n_shared_lines, 1);
         assert_eq!(rejoined.n_joined + rejoined.n_left, 1);
