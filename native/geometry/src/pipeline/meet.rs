@@ -1,16 +1,16 @@
 //! Lines along which sheets meet: edges are laid there, and the sheets of the result joined.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 use super::frame::{Frame, Prepared, bits};
 use super::join::Joined;
-use super::report::Rejoined;
+use super::report::{Mirrored, PartReport, Rejoined};
 use super::split::{Fate, Parts};
 use super::warning::Fault;
 use crate::clean::{SharedLine, Strand};
 use crate::mesh::{Id, PolygonMesh, VertexId};
 use crate::progress::{Cancelled, Progress};
-use crate::rejoin::{self, Line, rejoin};
+use crate::rejoin::{self, Given, Line, Sheet, rejoin};
 
 /// The lines along which sheets meet, at least one of which was remeshed.
 pub struct Meetings {
@@ -81,7 +81,16 @@ impl Meetings {
                 strand.faces = ranges[part].clone();
             }
         }
-        let found = rejoin(&joined.mesh, &self.lines, progress)?;
+        let sheets = ranges.iter().zip(&joined.parts).map(|(faces, part)| Sheet {
+            faces: faces.clone(),
+            may_change: !part.is_mirrored(),
+        });
+        let given = Given {
+            mesh: &joined.mesh,
+            sheets: &sheets.collect::<Vec<_>>(),
+            features: &joined.features,
+        };
+        let found = rejoin(&given, &self.lines, progress)?;
         let n_shared_lines = self.lines.len();
         let each = found.is_joined.iter().zip(&self.are_done);
         let n_joined = each.filter(|(joined, done)| **joined && **done).count();
@@ -99,17 +108,23 @@ impl Joined {
     /// Takes sheets that were joined; of vertices that are one now the first says where it lies on
     /// its sphere.
     fn rename(&mut self, found: rejoin::Rejoined) {
-        let mut sphere = vec![None; found.mesh.n_vertices()];
-        for (v, &point) in self.sphere.iter().enumerate() {
-            let name = found.name[VertexId::from_index(v)];
-            sphere[name.index()].get_or_insert(point);
+        let middle = |&[a, b]: &[VertexId; 2]| {
+            let [a, b] = [a, b].map(|v| self.sphere[v.index()]);
+            if a == b { a } else { (a + b).normalize_or(a) }
+        };
+        self.sphere = found.from.iter().map(middle).collect();
+        for (part, &n) in self.parts.iter_mut().zip(&found.n_faces) {
+            part.n_faces = n;
         }
-        self.sphere = sphere.into_iter().flatten().collect();
-        let mut seen = HashSet::new();
-        let named = self.features.iter().map(|ends| ends.map(|v| found.name[v]));
-        let is_new = |&[a, b]: &[VertexId; 2]| seen.insert([a.min(b), a.max(b)]);
-        self.features = named.filter(is_new).collect();
+        self.features = found.features;
         self.mesh = found.mesh;
+    }
+}
+
+impl PartReport {
+    /// Whether it would not be symmetric with other faces.
+    fn is_mirrored(&self) -> bool {
+        matches!(self.mirrored, Some(Mirrored::Used | Mirrored::Image { .. }))
     }
 }
 

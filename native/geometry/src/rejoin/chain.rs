@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::{Line, Strand};
+use super::{Edge, Given, Line, Strand, sorted};
 use crate::mesh::{FaceId, Id, PolygonMesh, VertexId, bounds};
 
 /// What a way costs beside its length: so many times its distance from the line. Below, ways cut
@@ -18,34 +18,52 @@ const SKIP: f64 = 0.5;
 const REACH: f64 = 1.0;
 
 /// Where a sheet runs along a line.
+#[derive(Clone)]
 pub(super) struct Chain {
+    /// Which sheet.
+    pub(super) sheet: usize,
     pub(super) vertices: Vec<VertexId>,
+    pub(super) is_closed: bool,
     pub(super) is_border: bool,
+    /// Whether its count was changed, so that its vertices are not even.
+    pub(super) is_changed: bool,
 }
 
-/// The edges of all sheets that meet others.
+impl Chain {
+    /// Its edges, in order.
+    pub(super) fn edges(&self) -> Vec<Edge> {
+        let next = self.vertices.iter().cycle().skip(1);
+        let n = self.vertices.len() - usize::from(!self.is_closed);
+        let edges = self.vertices.iter().zip(next).take(n);
+        edges.map(|(&a, &b)| sorted([a, b])).collect()
+    }
+}
+
+/// The edges of all sheets.
 pub(super) struct Sheets<'a> {
     mesh: &'a PolygonMesh,
     /// By where their faces begin.
-    edges: BTreeMap<usize, Edges>,
+    names: BTreeMap<usize, usize>,
+    edges: Vec<Edges>,
 }
 
 /// The edges of a sheet.
 struct Edges {
     /// Each once, and whether it has one face.
-    ends: Vec<([VertexId; 2], bool)>,
+    ends: Vec<(Edge, bool)>,
     mean: f64,
 }
 
 impl<'a> Sheets<'a> {
-    pub(super) fn new(mesh: &'a PolygonMesh, lines: &[Line]) -> Self {
-        let mut edges = BTreeMap::new();
-        for strand in lines.iter().flat_map(|line| &line.strands) {
-            let faces = &strand.faces;
-            let own = edges.entry(faces.start);
-            own.or_insert_with(|| Edges::new(mesh, faces.clone()));
+    pub(super) fn new(given: &Given<'a>) -> Self {
+        let sheets = given.sheets.iter();
+        let names = sheets.clone().enumerate();
+        let edges = sheets.map(|sheet| Edges::new(given.mesh, sheet.faces.clone()));
+        Self {
+            mesh: given.mesh,
+            names: names.map(|(i, sheet)| (sheet.faces.start, i)).collect(),
+            edges: edges.collect(),
         }
-        Self { mesh, edges }
     }
 
     /// The chains of a line's sheets, of those that have one.
@@ -53,19 +71,21 @@ impl<'a> Sheets<'a> {
         let mut taken: BTreeSet<VertexId> = BTreeSet::new();
         let mut chains = Vec::new();
         for strand in &line.strands {
-            let edges = &self.edges[&strand.faces.start];
-            let sheet = Sheet::near((self.mesh, edges), (line, strand), &taken);
-            if let Some(vertices) = sheet.along(line) {
+            let sheet = self.names[&strand.faces.start];
+            let near = Near::new((self.mesh, &self.edges[sheet]), (line, strand), &taken);
+            if let Some(vertices) = near.along(line) {
                 // A sheet that meets itself does so with two chains, whose ends may be one.
-                let inner = if line.is_closed {
-                    0..vertices.len()
-                } else {
-                    1..vertices.len() - 1
+                let inner = match line.is_closed {
+                    true => 0..vertices.len(),
+                    false => 1..vertices.len() - 1,
                 };
                 taken.extend(&vertices[inner]);
                 chains.push(Chain {
+                    sheet,
                     vertices,
+                    is_closed: line.is_closed,
                     is_border: strand.is_border,
+                    is_changed: false,
                 });
             }
         }
@@ -94,16 +114,16 @@ impl Edges {
 }
 
 /// The edges of a sheet near a line.
-struct Sheet<'a> {
+struct Near<'a> {
     mesh: &'a PolygonMesh,
     mean: f64,
     neighbours: BTreeMap<VertexId, Vec<VertexId>>,
 }
 
-impl<'a> Sheet<'a> {
+impl<'a> Near<'a> {
     /// The edges near a line but those at some vertices; of a sheet that ends there, those of its
     /// border.
-    fn near(
+    fn new(
         (mesh, edges): (&'a PolygonMesh, &Edges),
         (line, strand): (&Line, &Strand),
         taken: &BTreeSet<VertexId>,

@@ -7,10 +7,11 @@
 //! face would be turned inside out.
 
 mod chain;
+mod strips;
 #[cfg(test)]
 mod tests;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use glam::DVec3;
@@ -40,13 +41,42 @@ pub struct Strand {
     pub is_border: bool,
 }
 
+/// An edge by its ends.
+pub type Edge = [VertexId; 2];
+
+/// A sheet of a mesh.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Sheet {
+    /// Its faces.
+    pub faces: Range<usize>,
+    /// Whether it may get other faces.
+    pub may_change: bool,
+}
+
+/// What is to be joined.
+#[derive(Clone, Copy, Debug)]
+pub struct Given<'a> {
+    /// All sheets, one after the other.
+    pub mesh: &'a PolygonMesh,
+    /// All of them, in order.
+    pub sheets: &'a [Sheet],
+    /// Edges that lie on lines.
+    pub features: &'a [Edge],
+}
+
 /// Sheets that were joined.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Rejoined {
-    /// The mesh; its faces are those that came, in the same order.
+    /// The mesh, sheet by sheet; a sheet that did not change has its faces in the same order.
     pub mesh: PolygonMesh,
+    /// How many faces each sheet has.
+    pub n_faces: Vec<usize>,
     /// What each vertex that came is called now.
     pub name: VertexMap<VertexId>,
+    /// The vertices that came in whose middle each vertex lies.
+    pub from: VertexMap<[VertexId; 2]>,
+    /// The edges on lines.
+    pub features: Vec<Edge>,
     /// Which lines have the same vertices in all their sheets. The others have not, because the
     /// counts of edges differ or no edges lie there.
     pub is_joined: Vec<bool>,
@@ -54,22 +84,24 @@ pub struct Rejoined {
 
 /// Gives sheets that meet along lines the same vertices there.
 ///
-/// `mesh` has all sheets, one after the other. No face loses a corner: where it would, sheets stay
-/// apart. Costs the edges near each line times its points.
+/// Counts that differ are brought together by strips of quads first. No face loses a corner: where
+/// it would, sheets stay apart. Costs the edges near each line times its points, and for each strip
+/// the quads of its sheet.
 ///
 /// # Errors
 /// When cancelled.
 pub fn rejoin(
-    mesh: &PolygonMesh,
+    given: &Given<'_>,
     lines: &[Line],
     progress: &Progress<'_>,
 ) -> Result<Rejoined, Cancelled> {
-    let mut joining = Joining::new(mesh);
+    let sheets = Sheets::new(given);
+    let chains = lines.iter().map(|line| sheets.chains(line)).collect();
+    let leveled = strips::level(given, chains, progress)?;
+    let mut joining = Joining::new(&leveled.mesh);
     let mut is_joined = Vec::with_capacity(lines.len());
-    let sheets = Sheets::new(mesh, lines);
-    for line in lines {
+    for (line, mut chains) in lines.iter().zip(leveled.chains) {
         progress.check()?;
-        let mut chains = sheets.chains(line);
         let are_found = chains.len() == line.strands.len();
         chains.sort_by_key(|chain| (chain.vertices.len(), !chain.is_border));
         // Most alike; of equally many the longest.
@@ -81,10 +113,22 @@ pub fn rejoin(
         let are_alike = alike.is_some_and(|alike| alike.len() == line.strands.len());
         is_joined.push(joins && are_found && are_alike);
     }
-    let (mesh, name) = joining.joined();
+    let (mesh, joined) = joining.joined();
+    let mut from = vec![None; mesh.n_vertices()];
+    for (&name, &of) in joined.iter().zip(leveled.from.iter()) {
+        from[name.index()].get_or_insert(of);
+    }
+    let features = leveled
+        .features
+        .iter()
+        .map(|ends| sorted(ends.map(|v| joined[v])));
+    let features: BTreeSet<Edge> = features.collect();
     Ok(Rejoined {
         mesh,
-        name,
+        n_faces: leveled.n_faces,
+        name: leveled.name.iter().map(|&v| joined[v]).collect(),
+        from: from.into_iter().flatten().collect(),
+        features: features.into_iter().collect(),
         is_joined,
     })
 }
@@ -165,7 +209,7 @@ impl<'a> Joining<'a> {
     }
 
     /// Where some vertices of chains are joined: on the line, in the middle of the sheets that end
-    /// there.
+    /// there, or go on, with counts that were not changed.
     fn goal(&mut self, line: &Line, chains: &[Chain], i: usize) -> DVec3 {
         let last = chains[0].vertices.len() - 1;
         match (line.is_closed, i) {
@@ -173,8 +217,9 @@ impl<'a> Joining<'a> {
             (false, i) if i == last => return line.points[line.points.len() - 1],
             _ => {}
         }
-        let ends = chains.iter().any(|chain| chain.is_border);
-        let counting = chains.iter().filter(|chain| chain.is_border == ends);
+        let key = |chain: &Chain| (chain.is_changed, !chain.is_border);
+        let best = chains.iter().map(key).min();
+        let counting = chains.iter().filter(|chain| Some(key(chain)) == best);
         let (mut sum, mut n) = (DVec3::ZERO, 0.0);
         for chain in counting {
             sum += self.places[self.groups.root(chain.vertices[i].index())];
@@ -210,6 +255,10 @@ impl<'a> Joining<'a> {
         let joined = PolygonMesh::new(positions, self.mesh.starts().to_vec(), corners);
         (joined.expect("no face loses a corner"), name)
     }
+}
+
+fn sorted([a, b]: Edge) -> Edge {
+    [a.min(b), a.max(b)]
 }
 
 /// The area of a polygon as a vector.

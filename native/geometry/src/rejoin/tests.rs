@@ -86,9 +86,29 @@ fn edges_of(mesh: &PolygonMesh, n_faces: usize) -> usize {
         .count()
 }
 
+/// The sheets that meet at lines.
+fn sheets(lines: &[Line], may_change: bool) -> Vec<Sheet> {
+    let strands = lines.iter().flat_map(|line| &line.strands);
+    let mut sheets: Vec<Sheet> = strands
+        .map(|strand| Sheet {
+            faces: strand.faces.clone(),
+            may_change,
+        })
+        .collect();
+    sheets.sort_by_key(|sheet| sheet.faces.start);
+    sheets.dedup();
+    sheets
+}
+
 fn rejoined(mesh: &PolygonMesh, lines: &[Line]) -> Rejoined {
-    let result = rejoin(mesh, lines, &Progress::none()).unwrap();
-    assert_eq!(result, rejoin(mesh, lines, &Progress::none()).unwrap());
+    let sheets = sheets(lines, false);
+    let given = Given {
+        mesh,
+        sheets: &sheets,
+        features: &[],
+    };
+    let result = rejoin(&given, lines, &Progress::none()).unwrap();
+    assert_eq!(result, rejoin(&given, lines, &Progress::none()).unwrap());
     assert_eq!(result.mesh.starts(), mesh.starts());
     for face in mesh.face_ids() {
         let named = mesh.face(face).iter().map(|&v| result.name[v]);
@@ -192,4 +212,80 @@ fn lines_that_end_in_one_vertex_have_one_vertex_there() {
         .filter(|face| face.contains(&post))
         .count();
     assert_eq!(at_post, 2 + 1 + 1);
+}
+
+/// Whether every face of a mesh is a quad that turns no corner against its own area.
+fn is_sound(mesh: &PolygonMesh) -> bool {
+    mesh.faces().all(|face| {
+        let corners: Vec<DVec3> = face.iter().map(|&v| mesh.position(v)).collect();
+        face.len() == 4 && n_turned(&corners, area(&corners)) == 0
+    })
+}
+
+/// A wall and stems as above beside so many quads that a few more or fewer do not matter.
+fn wall_in_a_field(stems: &[u32]) -> (PolygonMesh, Line, Vec<Sheet>) {
+    let (mesh, line) = wall(stems);
+    let mut stack = Stack {
+        positions: mesh.positions().to_vec(),
+        faces: mesh
+            .faces()
+            .map(|face| face.iter().map(|v| v.0).collect())
+            .collect(),
+    };
+    let mut sheets = sheets(std::slice::from_ref(&line), true);
+    sheets.push(Sheet {
+        faces: stack.grid([20, 20], |i, j| DVec3::new(i, j, -9.0)),
+        may_change: false,
+    });
+    (stack.mesh(), line, sheets)
+}
+
+#[test]
+fn stems_with_other_counts_get_that_of_the_wall() {
+    for stems in [&[5][..], &[7], &[4], &[9], &[5, 8], &[6, 7]] {
+        let (mesh, line, sheets) = wall_in_a_field(stems);
+        let lines = [line];
+        let given = Given {
+            mesh: &mesh,
+            sheets: &sheets,
+            features: &[],
+        };
+        let result = rejoin(&given, &lines, &Progress::none()).unwrap();
+        assert_eq!(result.is_joined, [true], "{stems:?}");
+        assert!(is_sound(&result.mesh));
+        let n_faces = result.n_faces.iter().sum::<usize>();
+        assert_eq!(n_faces, result.mesh.n_faces());
+        let n = edges_of(&result.mesh, 2 + stems.len());
+        assert!((4..=9).contains(&n), "{stems:?}: {n}");
+        // A wall with stems can be shrunk to a point, and so can the field.
+        let n_edges: usize = (1..5).map(|n| edges_of(&result.mesh, n)).sum();
+        assert_eq!(result.mesh.n_vertices() + n_faces, n_edges + 2);
+        for v in result.name.iter() {
+            assert!(v.index() < result.mesh.n_vertices());
+        }
+        for (v, of) in result.mesh.positions().iter().zip(result.from.iter()) {
+            let [a, b] = of.map(|v| mesh.position(v));
+            assert!(v.distance(a.midpoint(b)) < 2.0);
+        }
+    }
+}
+
+#[test]
+fn features_are_cut_with_the_strips_that_cross_them() {
+    let (mesh, line, sheets) = wall_in_a_field(&[5]);
+    let lines = [line];
+    // The far border of the stem, of five edges beside six of the wall.
+    let far = |v: u32| VertexId(49 + 5 * v + 4);
+    let features: Vec<Edge> = (0..5).map(|v| [far(v), far(v + 1)]).collect();
+    let given = Given {
+        mesh: &mesh,
+        sheets: &sheets,
+        features: &features,
+    };
+    let result = rejoin(&given, &lines, &Progress::none()).unwrap();
+    assert_eq!(result.features.len(), result.n_faces[1] / 4);
+    for [a, b] in &result.features {
+        let has_both = |face: &[VertexId]| face.contains(a) && face.contains(b);
+        assert!(result.mesh.faces().any(has_both));
+    }
 }

@@ -1,35 +1,19 @@
 //! Surfaces that share edges: what goes on there is done, and what ends there is joined to it again.
 
 use glam::DVec3;
-use orbflow_geometry::pipeline::Settings;
 
-use super::mixed::{Mixed, kinds, remesh, settings, walled_box};
-use super::{refused, stays};
+use super::mixed::{Mixed, remesh, settings, walled_box};
 
 #[test]
-fn a_box_with_a_wall_is_done_and_the_wall_stays() {
+fn a_box_and_the_wall_in_it_are_done() {
     let mesh = walled_box(DVec3::ZERO).mesh();
-    let result = remesh(&mesh, &settings(100)).unwrap();
-    stays(&result, &mesh, [10]);
-    let report = &result.report;
-    assert_eq!((report.parts.len(), report.kept.len()), (1, 1));
+    let report = remesh(&mesh, &settings(100)).unwrap().report;
+    assert_eq!((report.parts.len(), report.kept.len()), (2, 0));
     assert_eq!((report.clean.n_shared_edges, report.clean.n_sheets), (4, 2));
     let told = "4 edges of three or more faces parted into 2 sheets";
     assert!(report.clean.sentences().contains(&told.to_owned()));
-    let reason = &report.kept[0].reasons[0];
-    assert_eq!((kinds(&report.kept[0]).len(), reason.edges.len()), (1, 4));
-    assert!(
-        reason
-            .text
-            .starts_with("1 border loop, 4 border edges (4 of them where 3"),
-        "{}",
-        reason.text
-    );
-    let strict = Settings {
-        strict: true,
-        ..settings(100)
-    };
-    assert_eq!(refused(&mesh, &strict).0.len(), 1);
+    let rejoined = report.rejoined.unwrap();
+    assert_eq!(rejoined.n_joined + rejoined.n_left, rejoined.n_shared_lines);
 }
 
 /// A wall of 4 x 4 quads with a stem of so many columns.
