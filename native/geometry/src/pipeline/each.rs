@@ -5,6 +5,7 @@ use super::density::Density;
 use super::frame::Prepared;
 use super::join::{self, Joined};
 use super::marks::Marks;
+use super::meet::Meetings;
 use super::mirror::{self, Plane, Role};
 use super::part::{PartJob, PartResult, Wanted};
 use super::report::Mirrored;
@@ -131,6 +132,7 @@ impl Each {
         mut prepared: Prepared,
         parts: &mut Parts,
         (mesh, settings): (&PolygonMesh, &Settings),
+        progress: &Progress<'_>,
     ) -> Result<(Prepared, Joined), Error> {
         let is_left: Vec<bool> = self.0.iter().map(Result::is_ok).collect();
         let mut made = Vec::new();
@@ -148,7 +150,9 @@ impl Each {
                 part.rename_image(&is_left);
             }
         }
-        Ok((prepared, join::join(made)))
+        let meetings = Meetings::new((mesh, &prepared.frame), parts);
+        let joined = meetings.join(join::join(made), progress)?;
+        Ok((prepared, joined))
     }
 }
 

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::crosses::Cross;
 use super::part::PartResult;
-use super::report::PartReport;
+use super::report::{PartReport, Rejoined};
 use crate::embed;
 use crate::mesh::{PolygonMesh, VertexId};
 
@@ -21,6 +21,8 @@ pub struct Joined {
     pub filling: Vec<[DVec3; 3]>,
     pub embedding: embed::Report,
     pub parts: Vec<PartReport>,
+    /// Where sheets met; none where they did nowhere.
+    pub rejoined: Option<Rejoined>,
 }
 
 /// Puts the parts one after the other; one part stays as it is.
@@ -64,6 +66,7 @@ pub fn join(results: Vec<PartResult>) -> Joined {
         filling,
         embedding: join_embeddings(&embeddings, &areas),
         parts,
+        rejoined: None,
     }
 }
 

@@ -27,6 +27,7 @@ mod handle;
 mod join;
 mod kept;
 mod marks;
+mod meet;
 mod mirror;
 mod open;
 mod origins;
@@ -58,7 +59,7 @@ pub use kept::{Flaw, Kept, Outcome, Reason};
 pub use mirror::{Mirror, Plane, Through};
 pub use origins::{Origin, Origins};
 pub use paired::Instead;
-pub use report::{Mirrored, PartReport, Reduced, Report};
+pub use report::{Mirrored, PartReport, Reduced, Rejoined, Report};
 pub use scored::score;
 pub use settings::{Kind, MAX_FACES, MIN_FACES, Primitive, Settings, Style};
 pub use small::{MAX_WELD, SmallParts};
@@ -189,9 +190,10 @@ fn run(
     };
     let facing = || Prepared::facing(cleaned, &input, settings.mirror(), &stage);
     let (prepared, plane) = clock.step("clean", facing)?;
+    let laid = meet::laid(&marked, &parts);
     let common = Common {
         prepared: &prepared,
-        marks: &Marks::new((mesh, &marked), &prepared.frame),
+        marks: &Marks::new((mesh, &laid), &prepared.frame),
         density: &Density::new(&input, &prepared.frame),
         reduced: given.reduced.filter(|_| parts.kept.is_empty()),
         settings,
@@ -199,7 +201,7 @@ fn run(
         predictor,
     };
     let each = common.run(&mut clock, progress)?;
-    let (prepared, mut joined) = each.join(prepared, &mut parts, (mesh, settings))?;
+    let (prepared, mut joined) = each.join(prepared, &mut parts, (mesh, settings), progress)?;
     let stage = progress.part("transfer", 0.9, 0.92);
     let crosses = crosses::leave(std::mem::take(&mut joined.crosses), &prepared.frame);
     let staying = Staying::new(mesh, parts.staying(mesh));
@@ -225,6 +227,7 @@ fn run(
         parts: joined.parts,
         kept: parts.kept,
         carried,
+        rejoined: joined.rejoined,
         score: judged.score,
         score_refused: judged.refused,
         warnings: judged.warnings,

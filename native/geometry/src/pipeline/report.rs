@@ -37,6 +37,8 @@ pub struct Report {
     pub kept: Vec<Kept>,
     /// What became of the edges that were to be carried; none where there were none.
     pub carried: Option<CarriedReport>,
+    /// What became of lines along which sheets meet; none where there were none.
+    pub rejoined: Option<Rejoined>,
     /// How good the result is; none when it was not asked for or could not be measured.
     pub score: Option<Score>,
     /// Why it could not be measured.
@@ -47,6 +49,17 @@ pub struct Report {
     pub steps: Vec<Step>,
     /// The most memory that the process held, in MiB; none where the system does not tell.
     pub peak_memory_mb: Option<f64>,
+}
+
+/// What became of lines along which sheets meet, where at least one of them was remeshed.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize)]
+pub struct Rejoined {
+    /// How many there are.
+    pub n_shared_lines: usize,
+    /// At how many all sheets have the same vertices again.
+    pub n_joined: usize,
+    /// At how many they have not: with other numbers of edges there, or because one stays as it was.
+    pub n_left: usize,
 }
 
 /// What is told of one part.

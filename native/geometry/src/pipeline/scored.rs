@@ -10,9 +10,9 @@ use super::marks::Marks;
 use super::mirror::Plane;
 use super::split::Parts;
 use super::warning::{Made, Warning, warnings};
-use super::{Error, Report, Settings};
+use super::{Error, Report, Settings, meet};
 use crate::clean;
-use crate::measure::{Topology, topology_of_triangles};
+use crate::measure::{Topology, topology, topology_of_triangles};
 use crate::mesh::{PolygonMesh, VertexId};
 use crate::progress::{Cancelled, Progress};
 use crate::score::{self, Reference, Score};
@@ -21,6 +21,7 @@ use crate::score::{self, Reference, Score};
 struct Judging<'a> {
     /// The parts of the input that were to be rebuilt, as they came, and what fills their borders.
     input: &'a PolygonMesh,
+    parts: &'a Parts,
     prepared: &'a Prepared,
     /// The marked edges of a mesh.
     marked: (&'a PolygonMesh, &'a [[VertexId; 2]]),
@@ -55,6 +56,7 @@ pub fn judge(
     let filled = filled(done, prepared, joined);
     let judging = Judging {
         input: filled.as_ref().unwrap_or(done),
+        parts,
         prepared,
         marked,
         output,
@@ -91,6 +93,7 @@ impl Judging<'_> {
             diagonal: self.prepared.frame.grow(DVec3::X).x,
             glance,
             lost_marks: self.lost_marks(progress)?,
+            rejoined: self.joined.rejoined,
         };
         judged.warnings = warnings(&made, settings, progress)?;
         Ok(judged)
@@ -103,22 +106,29 @@ impl Judging<'_> {
     ) -> Result<Score, score::Error> {
         let reference = Reference {
             mesh: self.input,
-            topology: Some(self.topology()),
+            topology: Some(self.topology(progress)?),
         };
         score::score(reference, self.output, wanted, progress)
     }
 
-    /// How the input hangs together once its borders are filled that were to be.
-    fn topology(&self) -> Topology {
-        let came = topology_of_triangles(&self.prepared.mesh);
+    /// How the input hangs together once its borders are filled that were to be, and sheets joined
+    /// where they meet.
+    fn topology(&self, progress: &Progress<'_>) -> Result<Topology, Cancelled> {
+        let came = match self.joined.rejoined {
+            Some(_) => topology(
+                &meet::whole(self.prepared, (self.marked.0, &self.parts.shared)),
+                progress,
+            )?,
+            None => topology_of_triangles(&self.prepared.mesh),
+        };
         let opened = self.joined.parts.iter().filter_map(|part| part.opened);
         let n_filled: usize = opened.map(|opened| opened.n_filled).sum();
         let n_borders = came.n_borders.saturating_sub(n_filled);
-        Topology {
+        Ok(Topology {
             closed: n_borders == 0,
             n_borders,
             ..came
-        }
+        })
     }
 
     /// The share of the marked edges that no edge lies along.

@@ -12,7 +12,7 @@ use super::frame::{Frame, bits};
 use super::kept::{Flaw, Kept, Outcome, Reason};
 use super::stay::some_faces;
 use super::{Error, Input, Settings, diagnosis, small};
-use crate::clean::{Apart, Cleaned};
+use crate::clean::{Apart, Cleaned, SharedLine};
 use crate::mesh::{FaceId, FaceMap, PolygonMesh, TriangleMesh, VertexId, VertexMap, bounds};
 use crate::progress::{Cancelled, Progress};
 
@@ -26,6 +26,21 @@ pub struct Parts {
     n: usize,
     /// The part of each face of the input, if it belongs to one.
     part_of: FaceMap<Option<u32>>,
+    /// The part that each surface is.
+    of_surfaces: Vec<usize>,
+    /// The lines along which surfaces met.
+    pub shared: Vec<SharedLine>,
+}
+
+/// What becomes of a surface.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Fate {
+    /// It is remeshed, as which of those that are.
+    Done(usize),
+    /// It goes out as it was.
+    Stays,
+    /// It is left out.
+    Dropped,
 }
 
 /// One part.
@@ -97,10 +112,15 @@ impl Parts {
             kept: Vec::new(),
             n: parts.len(),
             part_of: FaceMap::filled(mesh.n_faces(), None),
+            of_surfaces: vec![0; n_surfaces],
+            shared: apart.shared,
         };
         for (i, part) in parts.into_iter().enumerate() {
             for &face in &part.faces {
                 chosen.part_of[face] = Some(i as u32);
+            }
+            if let Some(surface) = part.surface {
+                chosen.of_surfaces[surface] = i;
             }
             match part.surface {
                 Some(surface) if part.reasons.is_empty() => {
@@ -206,14 +226,24 @@ impl Parts {
 
     /// The faces of the input that go out as they were, in order.
     pub fn staying(&self, mesh: &PolygonMesh) -> Vec<FaceId> {
-        let stays = |part: u32| {
-            let at = self
-                .kept
-                .binary_search_by_key(&(part as usize), |kept| kept.part);
-            at.is_ok_and(|at| self.kept[at].outcome == Outcome::Kept)
-        };
+        let stays = |part: u32| self.stays(part as usize);
         let is_staying = |face: &FaceId| self.part_of[*face].is_some_and(stays);
         mesh.face_ids().filter(is_staying).collect()
+    }
+
+    fn stays(&self, part: usize) -> bool {
+        let at = self.kept.binary_search_by_key(&part, |kept| kept.part);
+        at.is_ok_and(|at| self.kept[at].outcome == Outcome::Kept)
+    }
+
+    /// What becomes of a surface, by its number among all.
+    pub fn fate(&self, surface: usize) -> Fate {
+        let part = self.of_surfaces[surface];
+        match self.names.binary_search(&part) {
+            Ok(at) => Fate::Done(at),
+            Err(_) if self.stays(part) => Fate::Stays,
+            Err(_) => Fate::Dropped,
+        }
     }
 
     /// Those of some edges of the input that have both ends on what is remeshed, by their places.

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::flowed::Flowed;
 use super::mirror::Plane;
-use super::report::{Mirrored, PartReport};
+use super::report::{Mirrored, PartReport, Rejoined};
 use super::settings::Settings;
 use crate::measure::cut_polygon;
 use crate::mesh::PolygonMesh;
@@ -90,6 +90,13 @@ pub enum Fault {
         /// The share of their length.
         lost_pct: f64,
     },
+    /// Sheets that met along a line and do no longer.
+    Parted {
+        /// At how many lines.
+        n_left: usize,
+        /// Of how many.
+        n_shared_lines: usize,
+    },
     /// A network's proposal was no use, and the solver's map was taken.
     Network {
         /// For how many parts.
@@ -108,6 +115,7 @@ pub(super) struct Made<'a> {
     pub glance: Option<Glance>,
     /// The share of the marked edges that no edge lies along.
     pub lost_marks: f64,
+    pub rejoined: Option<Rejoined>,
 }
 
 impl Fault {
@@ -152,6 +160,12 @@ impl Fault {
             Self::Lines { lost_pct } => {
                 format!("{lost_pct:.0} % of the sharp or marked lines have no edges along them")
             }
+            Self::Parted {
+                n_left,
+                n_shared_lines,
+            } => format!(
+                "sheets no longer meet vertex by vertex along {n_left} of {n_shared_lines} lines where they did"
+            ),
             Self::Network { n_parts } => {
                 let (parts, _) = of(*n_parts, "part", "", "");
                 format!(
@@ -194,6 +208,7 @@ pub(super) fn warnings(
         made.replaced(),
         made.mirror(),
         made.lines(settings),
+        made.rejoined.and_then(Rejoined::fault),
         made.network(),
     ];
     Ok(faults.into_iter().flatten().map(Warning::from).collect())

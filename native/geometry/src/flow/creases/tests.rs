@@ -17,24 +17,29 @@ fn field_of(mesh: &TriangleMesh) -> OrientationField {
     orient(mesh, &Settings::default(), &Progress::none()).unwrap()
 }
 
+/// Edges whose corners are told by how they turn.
+fn all(edges: &HalfedgeMap<bool>) -> Sharp<'_> {
+    Sharp { edges, firm: None }
+}
+
 #[test]
 fn a_box_has_twelve_lines_between_its_corners() {
     let mesh = shapes::cuboid(10);
     let sharp = sharp_edges(&mesh, SHARP);
-    let corners = corners(&mesh, &sharp);
+    let corners = corners(&mesh, all(&sharp));
     assert_eq!(corners.iter().filter(|&&is| is).count(), 8);
     let h = (total_area(&mesh) / 400.0).sqrt();
     let mut field = field_of(&mesh);
     let sizes = FaceMap::filled(mesh.n_faces(), h);
-    attract(&mesh, &mut field, &sharp, &sizes);
+    attract(&mesh, &mut field, all(&sharp), &sizes);
     for v in mesh.vertex_ids() {
         assert_eq!(field.indices[v], i32::from(corners[v]));
     }
-    let whole = lines(&mesh, &field, &sharp, h);
+    let whole = lines(&mesh, &field, all(&sharp), h);
     assert_eq!(whole.len(), 12);
     assert!(whole.iter().all(|line| line.halfedges.len() == 10));
     // For quads a quarter as long, the longer edges come in pieces.
-    let cut = lines(&mesh, &field, &sharp, h / 4.0);
+    let cut = lines(&mesh, &field, all(&sharp), h / 4.0);
     assert!(cut.len() > 12);
     let n_edges: usize = cut.iter().map(|line| line.halfedges.len()).sum();
     assert_eq!(n_edges, 120);
@@ -48,11 +53,11 @@ fn a_box_has_twelve_lines_between_its_corners() {
 fn closed_lines_come_once_and_round_shapes_have_none() {
     let mesh = shapes::sphere(8);
     let field = field_of(&mesh);
-    assert!(lines(&mesh, &field, &sharp_edges(&mesh, SHARP), 0.2).is_empty());
+    assert!(lines(&mesh, &field, all(&sharp_edges(&mesh, SHARP)), 0.2).is_empty());
     let on_equator = |v| mesh.position(v).z.abs() < 1e-9;
     let equator = |h| on_equator(mesh.origin(h)) && on_equator(mesh.target(h));
     let sharp = mesh.halfedge_ids().map(equator).collect();
-    let lines = chains(&mesh, &field, &sharp);
+    let lines = chains(&mesh, &field, all(&sharp));
     let singular = |v: &VertexId| on_equator(*v) && field.indices[*v] != 0;
     let n_singular = mesh.vertex_ids().filter(singular).count();
     assert_eq!(lines.len(), n_singular.max(1));
