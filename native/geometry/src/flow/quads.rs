@@ -13,7 +13,7 @@ use super::laid::{Laid, lay};
 use super::mirror::Plan;
 use super::place::PlaceError;
 use super::search::{QuantiseError, Quantised, Score, quantise};
-use super::settings::Settings;
+use super::settings::{Creases, Settings};
 use super::sizes::{self, SizesError};
 use super::thin::n_irregular;
 use super::wish::WishError;
@@ -305,7 +305,9 @@ fn whole(
     let part = progress.part("", 0.25, 1.0);
     let mut search = settings.search;
     if plan.is_firm() {
-        search.weights.count = COUNT_OF_SOLIDS;
+        if settings.creases == Creases::All {
+            search.weights.count = COUNT_OF_SOLIDS;
+        }
         let firm = plan.lines().enumerate().filter(|(_, line)| line.is_firm);
         let firm = firm.map(|(i, line)| FirmLine {
             line: i,

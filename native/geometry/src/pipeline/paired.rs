@@ -135,7 +135,7 @@ fn counted(
     let mut n_faces = even(n_faces);
     let mut pairs = make(n_faces, &progress.part("", 0.0, 0.5))?;
     for _ in 1..N_TRIES {
-        let share = wanted as f64 / pairs.n_quads;
+        let share = wanted as f64 / pairs.n_quads.max(1.0);
         let next = even(share * n_faces as f64);
         if (share - 1.0).abs() < NEAR_COUNT || next == n_faces {
             break;
@@ -298,6 +298,7 @@ pub(super) fn told<T>(result: Result<T, pipeline::Error>) -> Result<Result<T, St
     match result {
         Ok(value) => Ok(Ok(value)),
         Err(pipeline::Error::Cancelled(cancelled)) => Err(cancelled),
+        Err(pipeline::Error::Unopened { reason }) => Ok(Err(reason)),
         Err(error) => Ok(Err(error.to_string())),
     }
 }

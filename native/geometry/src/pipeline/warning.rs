@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::flowed::Flowed;
-use super::mirror::Plane;
+use super::mirror::{Mirror, Plane};
 use super::report::{Mirrored, PartReport, Rejoined};
 use super::settings::Settings;
 use crate::measure::cut_polygon;
@@ -206,7 +206,7 @@ pub(super) fn warnings(
         made.count(settings),
         made.flow(),
         made.replaced(),
-        made.mirror(),
+        made.mirror(settings),
         made.lines(settings),
         made.rejoined.and_then(Rejoined::fault),
         made.network(),
@@ -286,9 +286,11 @@ impl Made<'_> {
         Some(Fault::Flow { n_parts, reason })
     }
 
-    fn mirror(&self) -> Option<Fault> {
+    fn mirror(&self, settings: &Settings) -> Option<Fault> {
+        // Nobody has asked for a plane of a part with borders, which seldom can be its own image.
+        let is_asked = |part: &PartReport| settings.mirror != Mirror::Auto || part.opened.is_none();
         let reason = |part: &PartReport| match &part.mirrored {
-            Some(Mirrored::Refused { reason }) => Some(reason.clone()),
+            Some(Mirrored::Refused { reason }) if is_asked(part) => Some(reason.clone()),
             _ => None,
         };
         let (n_parts, reason) = self.refused(reason)?;
