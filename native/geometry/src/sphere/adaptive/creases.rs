@@ -28,6 +28,9 @@ pub struct Stops<'a> {
     at: Vec<Vec<f64>>,
 }
 
+/// All lines together have no more steps than this for each face.
+const MOST_STEPS: f64 = 2.0;
+
 impl<'a> Stops<'a> {
     /// As far apart as edges are long where `n_faces` triangles are spread by a density.
     pub fn new(
@@ -41,7 +44,16 @@ impl<'a> Stops<'a> {
             let density = line.vertices.iter().map(|&v| density[v]).sum::<f64>() / n_ends;
             unit / density.sqrt()
         };
-        let sizes: Vec<f64> = lines.iter().map(size).collect();
+        let mut sizes: Vec<f64> = lines.iter().map(size).collect();
+        let n_steps = lines.iter().zip(&sizes).map(|(line, size)| line.length() / size);
+        let n_steps = n_steps.sum::<f64>();
+        let most = MOST_STEPS * n_faces as f64;
+        if n_steps > most {
+            // A part that is all border has next to no area for its length.
+            for (line, size) in lines.iter().zip(&mut sizes) {
+                *size = (*size * n_steps / most).max(line.length() / most);
+            }
+        }
         let stops = |(line, size): (&FeatureLine, &f64)| {
             let least = if line.is_closed() { 3.0 } else { 1.0 };
             let n = (line.length() / size).round().max(least);
