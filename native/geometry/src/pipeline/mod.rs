@@ -20,6 +20,7 @@ mod diagnosis;
 mod each;
 mod error;
 mod even;
+mod fault;
 mod fixed;
 mod flow;
 mod flowed;
@@ -58,6 +59,7 @@ pub use carried::CarriedReport;
 pub use clock::{Step, peak_memory_mb};
 pub use crosses::Cross;
 pub use error::Error;
+pub use fault::Fault;
 pub use flowed::Flowed;
 pub use kept::{Flaw, Kept, Outcome, Reason};
 pub use laid::Instead;
@@ -68,7 +70,7 @@ pub use scored::score;
 pub use settings::{Kind, MAX_FACES, MIN_FACES, Primitive, Settings, Style};
 pub use small::{MAX_WELD, SmallParts};
 pub use verbs::{Decimated, EmbedReport, EmbeddedParts, decimate, embed};
-pub use warning::{Fault, Warning};
+pub use warning::Warning;
 
 use glam::DVec3;
 
