@@ -74,7 +74,9 @@ impl Deformed {
         let edges = |edges: &[[VertexId; 2]]| -> Vec<[VertexId; 2]> {
             let both = |[a, b]: &[VertexId; 2]| Some([VertexId(named(*a)?), VertexId(named(*b)?)]);
             let mut edges: Vec<_> = edges.iter().filter_map(both).collect();
-            edges.iter_mut().for_each(|ends| ends.sort_unstable());
+            for ends in &mut edges {
+                ends.sort_unstable();
+            }
             edges.sort_unstable();
             edges
         };

@@ -11,6 +11,7 @@
 //! sphere still covers it. Across firm edges nothing is paired: triangles that are left over there
 //! stay, three quads each once all are split. Not done here: laying the quads on the surface (`deform`).
 
+mod improve;
 mod matching;
 mod refine;
 mod split;
@@ -100,7 +101,7 @@ pub fn pair(map: &SphereMap, stay: Stay<'_>, progress: &Progress) -> Result<Pair
         if !worth::ease(mesh, stay, &mut arcs, &mate) {
             break;
         }
-        matching::improve(&arcs, &mut mate, &progress.part("", 0.9, 0.9))?;
+        improve::improve(&arcs, &mut mate, &progress.part("", 0.9, 0.9))?;
     }
     let mut quads = worth::quads(mesh, stay, &mate);
     let alone = worth::triangles(mesh, &mate);

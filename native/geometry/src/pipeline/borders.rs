@@ -64,9 +64,10 @@ pub enum Closure {
 impl Opened {
     /// What is told of a part; nothing where it had no borders.
     pub(super) fn new([n_borders, n_filled]: [usize; 2], is_doubled: bool) -> Option<Self> {
-        let way = match is_doubled {
-            true => Closure::Doubled,
-            false => Closure::Capped,
+        let way = if is_doubled {
+            Closure::Doubled
+        } else {
+            Closure::Capped
         };
         (n_borders > 0).then_some(Self {
             n_borders,

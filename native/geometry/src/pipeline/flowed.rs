@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::attempt::Attempt;
 use super::crosses::Cross;
-use super::paired::Instead;
+use super::laid::Instead;
 use crate::deform::Deformed;
 use crate::{embed, flow, sphere};
 

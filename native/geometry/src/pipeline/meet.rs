@@ -2,11 +2,11 @@
 
 use std::collections::HashMap;
 
+use super::fault::Fault;
 use super::frame::{Frame, Prepared, bits};
 use super::join::Joined;
 use super::report::{Mirrored, PartReport, Rejoined};
 use super::split::{Fate, Parts};
-use super::warning::Fault;
 use crate::clean::{SharedLine, Strand};
 use crate::mesh::{Id, PolygonMesh, VertexId};
 use crate::progress::{Cancelled, Progress};

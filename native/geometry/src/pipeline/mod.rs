@@ -20,12 +20,17 @@ mod diagnosis;
 mod each;
 mod error;
 mod even;
+mod fault;
+mod finish;
+mod fixed;
 mod flow;
 mod flowed;
 mod frame;
+mod ground;
 mod handle;
 mod join;
 mod kept;
+mod laid;
 mod marks;
 mod meet;
 mod mirror;
@@ -34,6 +39,7 @@ mod origins;
 mod paired;
 mod part;
 mod probe;
+mod reduce;
 mod report;
 mod rods;
 mod scored;
@@ -54,17 +60,18 @@ pub use carried::CarriedReport;
 pub use clock::{Step, peak_memory_mb};
 pub use crosses::Cross;
 pub use error::Error;
+pub use fault::Fault;
 pub use flowed::Flowed;
 pub use kept::{Flaw, Kept, Outcome, Reason};
+pub use laid::Instead;
 pub use mirror::{Mirror, Plane, Through};
 pub use origins::{Origin, Origins};
-pub use paired::Instead;
 pub use report::{Mirrored, PartReport, Reduced, Rejoined, Report};
 pub use scored::score;
 pub use settings::{Kind, MAX_FACES, MIN_FACES, Primitive, Settings, Style};
 pub use small::{MAX_WELD, SmallParts};
 pub use verbs::{Decimated, EmbedReport, EmbeddedParts, decimate, embed};
-pub use warning::{Fault, Warning};
+pub use warning::Warning;
 
 use glam::DVec3;
 
@@ -73,16 +80,14 @@ use crate::embed::OffsetPredictor;
 use crate::mesh::{PolygonMesh, VertexId};
 use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
-use crate::{clean, measure, transfer};
+use crate::{clean, transfer};
 use clock::Clock;
 use density::Density;
 use each::Common;
+use finish::Made;
 use frame::Prepared;
-use join::Joined;
 use marks::Marks;
-use scored::{judge, sound};
 use split::Parts;
-use stay::{Elements, Staying};
 
 /// The version of Orbflow.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -201,42 +206,17 @@ fn run(
         predictor,
     };
     let each = common.run(&mut clock, progress)?;
-    let (prepared, mut joined) = each.join(prepared, &mut parts, (mesh, settings), progress)?;
-    let stage = progress.part("transfer", 0.9, 0.92);
-    let crosses = crosses::leave(std::mem::take(&mut joined.crosses), &prepared.frame);
-    let staying = Staying::new(mesh, parts.staying(mesh));
-    let stayed = (&parts, &staying);
-    let carrying = || elements(&input, (&prepared, plane), &mut joined, stayed, &stage);
-    let (mut made, carried) = clock.step("transfer", carrying)?;
-    let judged = judge(
-        (given.mesh, &parts),
-        (&prepared, plane),
-        (mesh, &marked),
-        (&made.mesh, &joined),
-        (settings, &mut clock, &progress.part("score", 0.92, 1.0)),
-    )?;
-    staying.append(&given, &mut made);
-    let report = Report {
-        version: VERSION,
-        settings: settings.clone(),
-        input: measure::topology(given.mesh, progress)?,
-        clean: prepared.report,
-        output: measure::topology(&made.mesh, progress)?,
+    let (prepared, joined) = each.join(prepared, &mut parts, (mesh, settings), progress)?;
+    let made = Made {
+        given,
+        input,
+        settings,
+        parts,
+        prepared,
         plane,
-        embedding: joined.embedding,
-        parts: joined.parts,
-        kept: parts.kept,
-        carried,
-        rejoined: joined.rejoined,
-        score: judged.score,
-        score_refused: judged.refused,
-        warnings: judged.warnings,
-        steps: clock.into_steps(),
-        peak_memory_mb: peak_memory_mb(),
+        joined,
     };
-    progress.at(1.0)?;
-    let report = sound(report, settings)?;
-    Ok(made.told(crosses, staying.n_faces(), report))
+    made.finished(clock, progress)
 }
 
 /// The parts of a mesh, and the mesh with its seams closed, where there are any.
@@ -249,44 +229,6 @@ fn taken_apart(
     let moved = apart.moved.take();
     let moved = moved.map(|places| mesh.with_positions(places));
     Ok((apart, moved))
-}
-
-/// What was made, with the artist's data on it, and what became of edges that were to be carried.
-fn elements(
-    input: &Input<'_>,
-    (prepared, plane): (&Prepared, Option<Plane>),
-    joined: &mut Joined,
-    (parts, staying): (&Parts, &Staying),
-    progress: &Progress<'_>,
-) -> Result<(Elements, Option<CarriedReport>), Cancelled> {
-    let which = parts.on_done(input.mesh, input.carried);
-    let frame = &prepared.frame;
-    let found = carried::carried((input, &which), (frame, plane), joined, progress)?;
-    let report = (!input.carried.is_empty()).then(|| {
-        let (n, length) = staying.carried_length(input, frame);
-        found.report(n, length)
-    });
-    let mut made = Elements {
-        mesh: joined
-            .mesh
-            .with_positions(frame.leave(joined.mesh.positions())),
-        materials: None,
-        sphere: std::mem::take(&mut joined.sphere),
-        carried: found.edges,
-        origins: None,
-    };
-    if input.materials.is_none() && input.cuts.is_none() {
-        return Ok((made, report));
-    }
-    let tree = Bvh::build_of_mesh(&prepared.mesh, progress)?;
-    let part = progress.part("", 0.0, 0.5);
-    let materials = input.materials.map(|of_faces| {
-        transfer::materials(&tree, &prepared.materials(of_faces), &joined.mesh, &part)
-    });
-    made.materials = materials.transpose()?;
-    let part = progress.part("", 0.5, 1.0);
-    made.origins = origins::origins(input, (prepared, &tree), &joined.mesh, &part)?;
-    Ok((made, report))
 }
 
 fn transfer_materials(

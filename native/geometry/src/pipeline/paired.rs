@@ -4,13 +4,12 @@
 //! is regular, but limbs thinner than their edges are lost. The input's own triangles, brought to
 //! twice the count and embedded, are paired as they are: less regular, but as long as a wire's are.
 
-use serde::Serialize;
-
 use super::clock::Clock;
 use super::even::{either_side, triangles};
-use super::part::{Ground, Wanted, embed_mesh};
-use super::probe::Halves;
-use crate::deform::{self, Deformed, Held, Target};
+use super::ground::Ground;
+use super::laid::Laid;
+use super::part::{Wanted, embed_mesh};
+use crate::deform::{self, Deformed, Held};
 use crate::mesh::{VertexId, VertexMap};
 use crate::pair::{self, Paired, Stay};
 use crate::pipeline;
@@ -23,74 +22,13 @@ use crate::{decimate, embed, measure};
 const N_TRIES: usize = 3;
 /// The share that the count may be off before they are made again.
 const NEAR_COUNT: f64 = 0.02;
-/// A surface that is nowhere farther than this many edges is met well enough by regular quads.
-const NEAR: f64 = 0.5;
-/// And beyond that what is nearer by this factor is worth less regular ones.
-const WORTH: f64 = 2.0;
-
 /// Of fewer quads the quad sphere's are as good, and their count is nearer.
 const FEWEST: usize = 24;
-
-/// What is used where quads do not flow.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Instead {
-    /// Triangles of the part in pairs.
-    PairedTriangles,
-    /// The quad sphere, where that has fewer inverted quads or few are wanted.
-    QuadSphere,
-}
-
-/// Quads that do not flow, laid on a part.
-pub struct Laid {
-    pub deformed: Deformed,
-    pub sphere: Option<sphere::Report>,
-    /// How far the surface is from them at most, in edges.
-    off: f64,
-}
-
-impl Laid {
-    pub fn new(deformed: Deformed, sphere: Option<sphere::Report>, target: &Target) -> Self {
-        let halves = Halves::of(&deformed.mesh);
-        let gaps = halves.gaps(target);
-        let farthest = gaps.into_iter().fold(0.0, f64::max);
-        let quad_area = halves.area() / deformed.mesh.n_faces() as f64;
-        Self {
-            off: (farthest / quad_area.max(f64::MIN_POSITIVE)).sqrt(),
-            deformed,
-            sphere,
-        }
-    }
-
-    pub fn is_good(&self) -> bool {
-        self.n_inverted() == 0 && self.off <= NEAR
-    }
-
-    pub fn n_inverted(&self) -> usize {
-        self.deformed.report.n_inverted
-    }
-
-    /// These quads, or those of the quad sphere where these are worse.
-    pub fn or_sphere(self, sphere: Self) -> (Self, Instead) {
-        if self.is_worse_than(&sphere) {
-            (sphere, Instead::QuadSphere)
-        } else {
-            (self, Instead::PairedTriangles)
-        }
-    }
-
-    /// Whether more quads are inverted, or as many and the surface is missed by much more.
-    fn is_worse_than(&self, other: &Self) -> bool {
-        let [own, others] = [self.n_inverted(), other.n_inverted()];
-        let is_far = self.off > NEAR && self.off > WORTH * other.off;
-        others < own || (others == own && is_far)
-    }
-}
 
 /// Quads of paired triangles, or why there are none.
 pub fn paired(
     wanted: &Wanted<'_>,
-    (map, ground): (&SphereMap, Ground<'_>),
+    (map, ground): (&SphereMap, &Ground),
     clock: &mut Clock,
     progress: &Progress<'_>,
 ) -> Result<Result<Laid, String>, Cancelled> {
@@ -149,7 +87,7 @@ fn counted(
 /// Even triangles, paired and cut in four.
 fn quarters(
     wanted: &Wanted<'_>,
-    (map, ground): (&SphereMap, Ground<'_>),
+    (map, ground): (&SphereMap, &Ground),
     clock: &mut Clock,
     progress: &Progress<'_>,
 ) -> Result<Laid, pipeline::Error> {
@@ -159,7 +97,10 @@ fn quarters(
         let real = ground.real_share(map, (&even.mesh, &even.sphere), &held.edges, &part)?;
         let mesh = triangles(&even.mesh);
         let kept = either_side(&mesh, &even.features);
-        let firm = ground.opening.map(|_| either_side(&mesh, &held.edges));
+        let firm = ground
+            .opening
+            .as_ref()
+            .map(|_| either_side(&mesh, &held.edges));
         let own = SphereMap::prove(mesh, VertexMap::from_vec(even.sphere));
         let own = own.map_err(embed::Error::from)?;
         let part = progress.part("pair", 0.8, 1.0);
@@ -184,11 +125,11 @@ fn quarters(
 /// Even triangles on a part, so many, and which of their edges were made along borders.
 fn even(
     wanted: &Wanted<'_>,
-    (map, ground): (&SphereMap, Ground<'_>),
+    (map, ground): (&SphereMap, &Ground),
     n_faces: usize,
     (clock, progress): (&mut Clock, &Progress<'_>),
 ) -> Result<(Deformed, Held, sphere::Report), pipeline::Error> {
-    let lines = ground.opening.map_or(&[][..], |opening| &opening.lines);
+    let lines = ground.lines();
     let density = VertexMap::filled(map.mesh().n_vertices(), 1.0);
     let settings = sphere::Settings {
         n_faces,
@@ -206,7 +147,7 @@ fn even(
         ..ground.deform()
     };
     let even = clock.step("deform", || {
-        deform::deform_held(map, primitive, ground.target, &settings, &part)
+        deform::deform_held(map, primitive, &ground.target, &settings, &part)
     })?;
     Ok((even, held, made.report))
 }
@@ -214,7 +155,7 @@ fn even(
 /// The part's own triangles, more or fewer, paired.
 fn own(
     wanted: &Wanted<'_>,
-    (map, ground): (&SphereMap, Ground<'_>),
+    (map, ground): (&SphereMap, &Ground),
     clock: &mut Clock,
     progress: &Progress<'_>,
 ) -> Result<Laid, pipeline::Error> {
@@ -256,7 +197,7 @@ impl Pairs {
     /// Lays them on the target of a map; where there are borders they cover the same sphere.
     fn lay(
         self,
-        (map, ground): (&SphereMap, Ground<'_>),
+        (map, ground): (&SphereMap, &Ground),
         clock: &mut Clock,
         progress: &Progress<'_>,
     ) -> Result<Laid, pipeline::Error> {
@@ -276,7 +217,7 @@ impl Pairs {
             let place = self.map.locate(quads.position(v));
             self.map.surface_position(place)
         };
-        let mut held = match ground.opening {
+        let mut held = match &ground.opening {
             Some(opening) => opening.held_at(firm, at, progress)?,
             None => Held::default(),
         };
@@ -285,7 +226,7 @@ impl Pairs {
         held.edges.dedup();
         let quads = (quads, &held);
         let deformed = clock.step("deform", || {
-            deform::lay(&self.map, quads, ground.target, &settings, progress)
+            deform::lay(&self.map, quads, &ground.target, &settings, progress)
         })?;
         let deformed = ground.opened(map, deformed, firm, progress)?;
         let deformed = deformed.map_err(|reason| pipeline::Error::Unopened { reason })?;
@@ -310,9 +251,10 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
+    use crate::deform::Target;
     use crate::elementary::sin_cos;
     use crate::embed::Solver;
-    use crate::mesh::{HalfedgeMap, TriangleMesh, VertexId};
+    use crate::mesh::{TriangleMesh, VertexId};
     use crate::pipeline::Settings;
     use crate::pipeline::density::Density;
     use crate::pipeline::marks::Marks;
@@ -335,9 +277,8 @@ mod tests {
         let quiet = Progress::none();
         let map = embed_mesh(mesh.clone(), wanted.predictor, &quiet).unwrap();
         let target = Target::new(mesh.clone(), &quiet).unwrap();
-        let marked = HalfedgeMap::filled(3 * mesh.n_faces(), false);
-        let ground = Ground::closed(&target, &marked);
-        let laid = paired(&wanted, (&map.map, ground), &mut Clock::default(), &quiet);
+        let ground = Ground::closed(target);
+        let laid = paired(&wanted, (&map.map, &ground), &mut Clock::default(), &quiet);
         laid.unwrap().unwrap()
     }
 

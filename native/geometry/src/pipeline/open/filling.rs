@@ -12,7 +12,7 @@ impl Closing {
         let mesh = &self.closed.mesh;
         let first = self.open.n_faces();
         let is_more = |face: FaceId| face.index() >= first && self.closed.is_real[face];
-        if !self.told.is_some_and(|told| told.n_filled > 0) {
+        if self.told.is_none_or(|told| told.n_filled == 0) {
             return Vec::new();
         }
         let more = || mesh.face_ids().skip(first).filter(|&face| is_more(face));
