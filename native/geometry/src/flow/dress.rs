@@ -5,9 +5,10 @@ use std::f64::consts::PI;
 use glam::DVec2;
 
 use super::creases::{self, Line, Network, Sharp};
+use super::error::Error;
 use super::field::{self, OrientationField};
+use super::guides::{FirmEdges, Guides};
 use super::mirror::{Plan, plan, plane_edges, straighten};
-use super::quads::{Error, FirmEdges, Guides};
 use super::settings::{Creases, Settings};
 use super::singularities::tidy;
 use super::wish::wish;
