@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use super::creases::{self, Line};
+use super::error::Error;
+use super::guides::Guides;
 use super::mirror::{Plan, images};
 use super::place::{Placed, place};
-use super::quads::{Error, Guides};
 use super::search::{self, Quantised};
 use crate::measure::Seam;
 use crate::mesh::VertexId;

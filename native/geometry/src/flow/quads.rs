@@ -2,53 +2,26 @@
 
 use glam::{DVec2, DVec3};
 use serde::Serialize;
-use thiserror::Error;
 
 use super::complex::FirmLine;
 use super::cones::keep_cones;
-use super::conformal::{FlattenError, flatten};
+use super::conformal::flatten;
 use super::dress::{Dressed, dress};
-use super::field::{FieldError, OrientationField};
+use super::error::Error;
+use super::field::OrientationField;
+use super::guides::Guides;
 use super::laid::{Laid, lay};
 use super::mirror::Plan;
-use super::place::PlaceError;
-use super::search::{QuantiseError, Quantised, Score, quantise};
+use super::search::{Quantised, Score, quantise};
 use super::settings::{Creases, Settings};
-use super::sizes::{self, SizesError};
+use super::sizes;
 use super::thin::n_irregular;
-use super::wish::WishError;
 use crate::measure::Seam;
 use crate::mesh::{
-    FaceMap, HalfedgeId, HalfedgeMap, PolygonMesh, PolygonMeshError, TriangleMesh, VertexId,
-    VertexMap,
+    FaceMap, HalfedgeId, HalfedgeMap, PolygonMesh, TriangleMesh, VertexId, VertexMap,
 };
-use crate::mirror::Doubled;
-use crate::progress::{Cancelled, Progress};
+use crate::progress::Progress;
 use crate::sphere_map::SphereMap;
-
-/// What of a surface's triangles the quads have to heed besides the shape.
-#[derive(Clone, Copy, Debug)]
-pub struct Guides<'a> {
-    /// Edges that are lines whatever their angle, on both sides of each.
-    pub lines: &'a HalfedgeMap<bool>,
-    /// Those of them that somebody marked: they stay lines where sharp edges are not clear.
-    pub marked: &'a HalfedgeMap<bool>,
-    /// Those of them that have to be met, such as borders: closed lines, or ones that end in others.
-    pub firm: Option<&'a FirmEdges>,
-    /// That the surface is its own image in a plane, and the quads shall be.
-    pub mirror: Option<&'a Doubled>,
-}
-
-/// Edges along which quads have to lie.
-#[derive(Clone, PartialEq, Debug)]
-pub struct FirmEdges {
-    /// They, on both sides of each.
-    pub is_on: HalfedgeMap<bool>,
-    /// Where two of them make a corner of quads.
-    pub is_corner: VertexMap<bool>,
-    /// Loops of them, two and two, along which as many quads shall lie.
-    pub twins: Vec<[Vec<HalfedgeId>; 2]>,
-}
 
 /// Quads that flow, not yet laid on the surface.
 #[derive(Clone, PartialEq, Debug)]
@@ -90,63 +63,6 @@ pub struct Report {
     pub n_creases: [usize; 2],
 }
 
-/// Why no quads were found.
-#[derive(Clone, PartialEq, Debug, Error)]
-pub enum Error {
-    /// The user asked to stop.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
-    /// There are no sizes.
-    #[error("no sizes: {0}")]
-    Sizes(SizesError),
-    /// There is no orientation field.
-    #[error("no orientation field: {0}")]
-    Field(FieldError),
-    /// There is no wish.
-    #[error("no map along the field: {0}")]
-    Wish(WishError),
-    /// There is no flat metric.
-    #[error("no flat metric: {0}")]
-    Flatten(FlattenError),
-    /// There are no whole periods.
-    #[error("no whole periods: {0}")]
-    Quantise(QuantiseError),
-    /// There are no positions.
-    #[error("no positions: {0}")]
-    Place(PlaceError),
-    /// The grid has vertices that no mesh can have.
-    #[error("the grid is no mesh: {0}")]
-    Mesh(#[from] PolygonMeshError),
-    /// Two edges of the grid join the same two vertices.
-    #[error("{n_doubled} edges of the grid join vertices that are joined already")]
-    Doubled {
-        /// How many halfedges that are.
-        n_doubled: usize,
-    },
-    /// Not all creases of a solid have edges along them.
-    #[error("edges lie along {n_met} of {n_lines} lines of sharp edges")]
-    Creases {
-        /// How many have.
-        n_met: usize,
-        /// How many there are.
-        n_lines: usize,
-    },
-    /// The creases are no solid's: none are there, or many end loosely.
-    #[error("sharp edges make no solid")]
-    NoSolid,
-    /// The grid is not its own image in the plane of symmetry.
-    #[error("the grid is not its own image in the plane")]
-    Uneven,
-    /// The grid has too many or too few quads.
-    #[error("the grid has {n_quads} quads; {n_wanted} were wanted")]
-    Count {
-        /// How many it has.
-        n_quads: usize,
-        /// How many were wanted.
-        n_wanted: usize,
-    },
-}
-
 /// The weight of the count where creases leave few to choose from: as dear as elsewhere, a cube of 6 n²
 /// quads would be twisted rather than be a few quads off.
 const COUNT_OF_SOLIDS: f64 = 6.0;
@@ -156,29 +72,6 @@ const COUNT_OF_SOLIDS: f64 = 6.0;
 const SLACK: usize = 8;
 /// Or by this many less half of those that are asked for: four stairs need 36, a bevelled letter 80.
 const SLACK_OF_FEW: usize = 80;
-
-/// Lifts a pass's cancellation to that of the whole.
-macro_rules! lift {
-    ($($error:ident => $variant:ident),*) => {$(
-        impl From<$error> for Error {
-            fn from(error: $error) -> Self {
-                match error {
-                    $error::Cancelled(cancelled) => Self::Cancelled(cancelled),
-                    error => Self::$variant(error),
-                }
-            }
-        }
-    )*};
-}
-
-lift!(
-    SizesError => Sizes,
-    FieldError => Field,
-    WishError => Wish,
-    FlattenError => Flatten,
-    QuantiseError => Quantise,
-    PlaceError => Place
-);
 
 /// How far the number of quads may be off: 2 %, or 2 quads.
 pub(super) fn tolerance(n_wanted: usize) -> usize {
@@ -195,7 +88,7 @@ pub(super) fn tolerance(n_wanted: usize) -> usize {
 /// for 2,000 quads.
 ///
 /// # Errors
-/// [`enum@Error`].
+/// [`Error`].
 pub fn flow(
     map: &SphereMap,
     guides: Guides<'_>,
@@ -320,7 +213,7 @@ fn whole(
     Ok(whole)
 }
 
-/// The lines of a plan along the loops of each twins.
+/// The lines of a plan along twin loops of edges, for each two of them.
 fn twins(mesh: &TriangleMesh, plan: &Plan, guides: Guides<'_>) -> Vec<[Vec<usize>; 2]> {
     let twins = guides.firm.map_or(&[][..], |firm| &firm.twins);
     let of = |edges: &Vec<HalfedgeId>| {
@@ -343,6 +236,7 @@ fn twins(mesh: &TriangleMesh, plan: &Plan, guides: Guides<'_>) -> Vec<[Vec<usize
         .collect()
 }
 
+/// Whether a grid joins no two vertices twice and has about as many quads as wanted.
 fn check(whole: &Quantised, (settings, is_firm): (&Settings, bool)) -> Result<(), Error> {
     let n_doubled = whole.report.score.n_doubled;
     if n_doubled > 0 {
@@ -364,8 +258,7 @@ fn check(whole: &Quantised, (settings, is_firm): (&Settings, bool)) -> Result<()
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::TriangleMesh;
-    use crate::progress::CancelToken;
+    use crate::progress::{CancelToken, Cancelled};
     use crate::shapes;
 
     /// A map by radial projection, for shapes that are star-shaped from the origin.

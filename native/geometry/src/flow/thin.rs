@@ -6,7 +6,8 @@
 
 use glam::DVec3;
 
-use super::quads::{Error, Flow, Report, tolerance};
+use super::error::Error;
+use super::quads::{Flow, Report, tolerance};
 use super::strips::{Leaving, doubled_edges, follow_strips};
 use crate::groups::Groups;
 use crate::measure::Seam;

@@ -1,28 +1,23 @@
 //! Quads that flow: an even surface, its flow, a cover of the sphere, the fit.
 
-use super::Settings;
-use super::attempt::{Attempt, Budget};
+mod fit;
+mod ground;
+
+use super::attempt::Budget;
 use super::clock::Clock;
-use super::crosses;
 use super::even::{For, Marked, even};
-use super::flowed::{Flowed, FlowedPart, better};
+use super::flowed::{FlowedPart, better};
 use super::open::Opening;
 use super::paired::told;
-use super::probe::n_missed;
-use super::{density, mirror, rods};
-use crate::deform::{self, Flowing, Target};
-use crate::embed::{self, Covered};
-use crate::flow::FirmEdges;
+use super::{Error, Settings, mirror};
+use crate::deform::Target;
+use crate::flow;
 use crate::measure::FeatureLine;
 use crate::mesh::{HalfedgeMap, VertexMap};
-use crate::mirror::{Doubled, Reflection};
+use crate::mirror::Doubled;
 use crate::progress::{Cancelled, Progress};
-use crate::sphere;
 use crate::sphere_map::SphereMap;
-use crate::{flow, pipeline};
-
-/// Of the marked edges this share may be lost before other settings are tried: short ones are.
-const MOST_LOST: f64 = 0.1;
+use ground::{Ground, Surface};
 
 /// Curvature weighs so much less beside marked edges: irregular vertices leave their lines no way,
 /// at 5/6 a ring on a ball is lost at 2,000 quads, at 1 at 400 and 500 too.
@@ -56,40 +51,6 @@ impl Asked<'_> {
     }
 }
 
-/// An even surface and what its quads are fitted to.
-struct Ground<'a> {
-    even: SphereMap,
-    /// The edges of the even surface that lie along the target's sharp or marked ones.
-    lines: HalfedgeMap<bool>,
-    /// Those that lie along marked ones.
-    marked: HalfedgeMap<bool>,
-    /// Those that lie along borders of a part that was closed.
-    border: Option<FirmEdges>,
-    /// Whose image is whose, where the even surface is its own image.
-    doubled: Option<Doubled>,
-    sphere: sphere::Report,
-    target: &'a Target,
-    /// The marked edges of the target.
-    wanted: Marked,
-    asked: Asked<'a>,
-    style: flow::Settings,
-}
-
-/// An even surface and its edges along lines, along marked ones, and along borders.
-type Wearing = (
-    SphereMap,
-    HalfedgeMap<bool>,
-    HalfedgeMap<bool>,
-    Option<FirmEdges>,
-);
-
-/// Why an attempt gave no quads.
-struct Refusal {
-    reason: String,
-    /// Whether it had too many.
-    is_over: bool,
-}
-
 /// Quads off the flat metric of an even surface, along all lines of a solid, or, where none are
 /// given, along what is long and clear.
 ///
@@ -102,45 +63,11 @@ pub fn along(
     clock: &mut Clock,
     progress: &Progress<'_>,
 ) -> Result<Result<FlowedPart, String>, Cancelled> {
-    let (n_quads, settings) = (asked.n_quads, asked.settings);
     let part = progress.part("sphere", 0.0, 0.15);
-    let wanted = Marked::new(target.mesh(), asked.marked);
-    let mut style = settings.flow(n_quads);
-    if !wanted.is_empty() {
-        style.field.alignment *= BESIDE_MARKS;
-    }
-    if !lines.is_empty() {
-        style.creases = flow::Creases::All;
-    }
-    let borders = asked.opening.map_or(&[][..], |opening| &opening.lines);
-    let quads = For {
-        n_quads,
-        sizes: &style.sizes,
-        seed: settings.seed,
-        lines: if lines.is_empty() { borders } else { lines },
-        is_solid: !lines.is_empty(),
-        opening: asked.opening,
-    };
-    let even = clock.step("sphere", || {
-        told(even(map, (target, &wanted), &quads, &part))
-    })?;
-    let even = match even {
-        Ok(even) => even,
+    let ground = clock.step("sphere", || ground((map, target), (asked, lines), &part))?;
+    let ground = match ground {
+        Ok(ground) => ground,
         Err(reason) => return Ok(Err(reason)),
-    };
-    let border = asked.opening.zip(even.border);
-    let border = border.map(|(opening, is_on)| opening.firm(even.map.mesh(), is_on));
-    let ground = Ground {
-        even: even.map,
-        lines: even.lines,
-        marked: even.marked,
-        border,
-        doubled: None,
-        sphere: even.sphere,
-        target,
-        wanted,
-        asked,
-        style,
     };
     let part = progress.part("", 0.15, 1.0);
     let sheet = asked.opening.filter(|opening| opening.is_sheet());
@@ -164,6 +91,40 @@ pub fn along(
     Ok(found.map(|found| found.found_in(budget.n_attempts)))
 }
 
+/// An even surface for quads along some lines; the text of the inner error is why there is none.
+fn ground<'a>(
+    (map, target): (&SphereMap, &'a Target),
+    (asked, lines): (Asked<'a>, &[FeatureLine]),
+    progress: &Progress<'_>,
+) -> Result<Result<Ground<'a>, String>, Cancelled> {
+    let wanted = Marked::new(target.mesh(), asked.marked);
+    let mut style = asked.settings.flow(asked.n_quads);
+    if !wanted.is_empty() {
+        style.field.alignment *= BESIDE_MARKS;
+    }
+    if !lines.is_empty() {
+        style.creases = flow::Creases::All;
+    }
+    let borders = asked.opening.map_or(&[][..], |opening| &opening.lines);
+    let quads = For {
+        n_quads: asked.n_quads,
+        sizes: &style.sizes,
+        seed: asked.settings.seed,
+        lines: if lines.is_empty() { borders } else { lines },
+        is_solid: !lines.is_empty(),
+        opening: asked.opening,
+    };
+    let even = told(even(map, (target, &wanted), &quads, progress))?;
+    Ok(even.map(|even| Ground {
+        sphere: even.sphere.clone(),
+        surface: Surface::new(even, asked.opening),
+        target,
+        wanted,
+        asked,
+        style,
+    }))
+}
+
 /// Of what quads shall be the images of each other.
 #[derive(Clone, Copy)]
 enum Symmetry<'a> {
@@ -182,23 +143,16 @@ fn symmetric(
     progress: &Progress<'_>,
 ) -> Result<Result<FlowedPart, String>, Cancelled> {
     let part = progress.part("sphere", 0.0, 0.05);
-    let found = clock.step("sphere", || {
-        let lines = ground.keeps_lines().then_some(&ground.lines);
-        told(match (symmetry, &ground.border) {
-            (Symmetry::OtherSide(sheet), Some(border)) => {
-                sheet.doubled((&ground.even, &border.is_on), ground.target, &part)
-            }
-            (Symmetry::OtherSide(_), None) => Ok(Err("it has no borders".to_owned())),
-            (Symmetry::Plane(axis), _) => mirror::symmetric((&ground.even, lines), axis, &part),
-        })
-    })?;
+    let found = clock.step("sphere", || told(own_image(&ground, symmetry, &part)))?;
     let mut symmetric = None;
     let reason = match found.flatten() {
         Ok((even, doubled)) => {
-            let usual = ground.doubled(even, doubled);
+            let own = ground
+                .surface
+                .doubled((even, doubled), ground.asked.opening);
+            let usual = std::mem::replace(&mut ground.surface, own);
             let best = ground.best(budget, clock, &progress.part("", 0.05, 0.6))?;
-            (ground.even, ground.lines, ground.marked, ground.border) = usual;
-            ground.doubled = None;
+            ground.surface = usual;
             match best {
                 Ok(best) if best.n_missed == 0 => return Ok(Ok(best)),
                 Ok(best) => {
@@ -221,211 +175,21 @@ fn symmetric(
     })
 }
 
-impl Ground<'_> {
-    /// Takes an even surface that is its own image in place of the usual one, which it returns.
-    fn doubled(&mut self, even: SphereMap, doubled: Doubled) -> Wearing {
-        let carried = |lines| doubled.carried(self.even.mesh(), lines);
-        let (lines, marked) = (carried(&self.lines), carried(&self.marked));
-        let border = self.asked.opening.zip(self.border.as_ref());
-        let border =
-            border.map(|(opening, firm)| opening.firm(doubled.mesh(), carried(&firm.is_on)));
-        self.doubled = Some(doubled);
-        (
-            std::mem::replace(&mut self.even, even),
-            std::mem::replace(&mut self.lines, lines),
-            std::mem::replace(&mut self.marked, marked),
-            std::mem::replace(&mut self.border, border),
-        )
-    }
-
-    /// The first of the attempts in which nothing fails, or the one in which least does of those that
-    /// the budget has room for; one more is worth the marks that it may meet.
-    fn best(
-        &self,
-        budget: &mut Budget,
-        clock: &mut Clock,
-        progress: &Progress<'_>,
-    ) -> Result<Result<FlowedPart, String>, Cancelled> {
-        let mut best: Result<FlowedPart, String> = Err(String::new());
-        let mut from = 0.0;
-        let all = Attempt::ALL.into_iter();
-        // Where a solid's creases are not met other settings do not help.
-        let all = all.filter(|attempt| !self.is_solid() || *attempt == Attempt::Usual);
-        for attempt in all.filter(|attempt| attempt.is_worth_trying(&self.style)) {
-            // Without strips nothing is its own image.
-            let is_flowing = best.as_ref().is_ok_and(|best| !best.is_last_resort());
-            // Nor do lines stay that have to be met.
-            let is_bound = self.doubled.is_some() || self.asked.opening.is_some();
-            if attempt.is_last_resort() && (is_flowing || is_bound) {
-                break;
-            }
-            // Without too many quads there is nothing to take out.
-            if attempt == Attempt::Thinned && !budget.is_over {
-                continue;
-            }
-            let is_spare = attempt == Attempt::Usual || attempt.is_last_resort();
-            let kept_back = if is_spare {
-                0
-            } else {
-                self.kept_back(&best, budget)
-            };
-            if !budget.take(attempt, kept_back) {
-                continue;
-            }
-            let to = from + 0.6 * (1.0 - from);
-            let found = self.attempt(attempt, clock, &progress.part("", from, to))?;
-            budget.is_over |= matches!(found, Err(Refusal { is_over: true, .. }));
-            let found = found.map_err(|refusal| refusal.reason);
-            let found = found.and_then(FlowedPart::not_cut_off);
-            from = to;
-            best = better(best, found);
-            let is_failing = best.as_ref().map_or(true, |best| best.n_failed() > 0);
-            if attempt == Attempt::Usual && is_failing && self.asked.opening.is_none() {
-                best = better(best, self.rings(clock, &progress.part("", from, from))?);
-            }
-            let is_done = |best: &FlowedPart| {
-                best.n_failed() == 0 && (best.lost <= MOST_LOST || attempt != Attempt::Usual)
-            };
-            if best.as_ref().is_ok_and(is_done) {
-                break;
-            }
+/// The even surface made its own image; the text of the inner error is why that cannot be.
+fn own_image(
+    ground: &Ground<'_>,
+    symmetry: Symmetry<'_>,
+    progress: &Progress<'_>,
+) -> Result<Result<(SphereMap, Doubled), String>, Error> {
+    let surface = &ground.surface;
+    match (symmetry, &surface.border) {
+        (Symmetry::OtherSide(sheet), Some(border)) => {
+            sheet.doubled((&surface.even, &border.is_on), ground.target, progress)
         }
-        Ok(best)
-    }
-
-    /// Rings, if the part is one limb from end to end.
-    fn rings(
-        &self,
-        clock: &mut Clock,
-        progress: &Progress<'_>,
-    ) -> Result<Result<FlowedPart, String>, Cancelled> {
-        let ground = (self.target, &self.wanted);
-        rods::rings(&self.even, ground, self.asked, (clock, progress))
-    }
-
-    /// What of the budget is kept back for what comes when no more settings are tried here.
-    fn kept_back(&self, best: &Result<FlowedPart, String>, budget: &Budget) -> usize {
-        match best {
-            Ok(best) => usize::from(self.doubled.is_some() && best.n_missed > 0),
-            // Strips are not taken out of quads with borders.
-            Err(_) if self.asked.opening.is_some() => usize::from(self.doubled.is_some()),
-            Err(_) => budget.kept_back(self.doubled.is_some()),
+        (Symmetry::OtherSide(_), None) => Ok(Err("it has no borders".to_owned())),
+        (Symmetry::Plane(axis), _) => {
+            let lines = ground.keeps_lines().then_some(&surface.lines);
+            mirror::symmetric((&surface.even, lines), axis, progress)
         }
-    }
-
-    /// Quads that flow by some settings, laid on the target.
-    fn attempt(
-        &self,
-        attempt: Attempt,
-        clock: &mut Clock,
-        progress: &Progress<'_>,
-    ) -> Result<Result<FlowedPart, Refusal>, Cancelled> {
-        let part = progress.part("flow", 0.0, 0.75);
-        let mut settings = attempt.settings(&self.style);
-        let weights = |values| density::weights(values, self.target, self.even.mesh());
-        settings.sizes.weights = self.asked.density.map(weights);
-        let found = clock.step("flow", || self.find(&settings, &part));
-        let is_over = matches!(
-            found,
-            Err(pipeline::Error::Flow(flow::Error::Count { n_quads, n_wanted })) if n_quads > n_wanted
-        );
-        let (found, covered) = match told(found)? {
-            Ok(found) => found,
-            Err(reason) => return Ok(Err(Refusal { reason, is_over })),
-        };
-        let part = progress.part("deform", 0.75, 1.0);
-        let quads = found.mesh.with_positions(covered.sphere);
-        let flowing = Flowing {
-            quads: &quads,
-            wanted: found.mesh.positions(),
-            crosses: &found.crosses,
-            sizes: &found.sizes,
-            seams: &found.seams,
-        };
-        let settings = deform::Settings {
-            evenness: self.evenness(),
-            is_on_lines: self.keeps_lines(),
-            forces_lines: self.asked.opening.is_some(),
-            // What is virtual may lie on what is real.
-            separates: self.asked.opening.is_none_or(|opening| !opening.overlaps()),
-            ..deform::Settings::default()
-        };
-        let fit = || deform::deform_flow(&self.even, flowing, self.target, &settings, &part);
-        let deformed = clock.step("deform", || told(fit().map_err(pipeline::Error::from)))?;
-        let mirrored = found.images.as_deref().zip(self.doubled.as_ref());
-        let evened = |deformed| match mirrored.map(|(images, of)| (images, of.reflection())) {
-            Some((images, Reflection::Across(axis))) => {
-                mirror::even_out(&deformed, images, axis, self.target)
-            }
-            // Of a sheet one side alone is kept.
-            Some((_, Reflection::Onto)) | None => deformed,
-        };
-        let deformed = match deformed.map(evened) {
-            Ok(deformed) => deformed,
-            Err(reason) => return Ok(Err(Refusal { reason, is_over })),
-        };
-        let opened = match self.asked.opening {
-            Some(opening) => opening.reopened(&deformed, (&found.firm, self.target), progress)?,
-            None => Ok(deformed),
-        };
-        let deformed = match opened {
-            Ok(deformed) => deformed,
-            Err(reason) => return Ok(Err(Refusal { reason, is_over })),
-        };
-        let marks = (&deformed.mesh, &deformed.features[..]);
-        Ok(Ok(FlowedPart {
-            mirrored: self.doubled.as_ref().map(|_| Ok(())),
-            n_missed: n_missed(&deformed.mesh, self.asked.bare(self.target)),
-            lost: self.wanted.lost(marks, progress)?,
-            deformed,
-            sphere: self.sphere.clone(),
-            crosses: crosses::some(self.even.mesh(), &found, self.asked.n_crosses()),
-            flowed: Flowed::Used {
-                attempt,
-                n_attempts: 1,
-                flow: found.report,
-                cover: covered.report,
-            },
-        }))
-    }
-
-    /// Whether there are lines that have to be met.
-    fn keeps_lines(&self) -> bool {
-        self.is_solid() || self.asked.opening.is_some()
-    }
-
-    /// Whether all sharp edges are followed.
-    fn is_solid(&self) -> bool {
-        self.style.creases == flow::Creases::All
-    }
-
-    /// How much edges wish for one length; where somebody wants quads of other sizes, not at all.
-    fn evenness(&self) -> f64 {
-        match self.asked.density {
-            None => self.asked.settings.style.evenness(),
-            Some(_) => 0.0,
-        }
-    }
-
-    /// The flow of the surface, laid on its sphere.
-    fn find(
-        &self,
-        settings: &flow::Settings,
-        progress: &Progress<'_>,
-    ) -> Result<(flow::Flow, Covered), pipeline::Error> {
-        let guides = flow::Guides {
-            lines: &self.lines,
-            marked: &self.marked,
-            firm: self.border.as_ref(),
-            mirror: self.doubled.as_ref(),
-        };
-        let found = flow::flow(&self.even, guides, settings, &progress.part("", 0.0, 0.95))?;
-        let found = if settings.may_exceed {
-            found.thinned(self.asked.n_quads)?
-        } else {
-            found
-        };
-        let covered = embed::cover(&found.mesh, &found.sphere, &progress.part("", 0.95, 1.0))?;
-        Ok((found, covered))
     }
 }

@@ -75,9 +75,10 @@ impl<'a> Sheets<'a> {
             let near = Near::new((self.mesh, &self.edges[sheet]), (line, strand), &taken);
             if let Some(vertices) = near.along(line) {
                 // A sheet that meets itself does so with two chains, whose ends may be one.
-                let inner = match line.is_closed {
-                    true => 0..vertices.len(),
-                    false => 1..vertices.len() - 1,
+                let inner = if line.is_closed {
+                    0..vertices.len()
+                } else {
+                    1..vertices.len() - 1
                 };
                 taken.extend(&vertices[inner]);
                 chains.push(Chain {

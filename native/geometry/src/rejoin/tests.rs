@@ -260,7 +260,7 @@ fn stems_with_other_counts_get_that_of_the_wall() {
         // A wall with stems can be shrunk to a point, and so can the field.
         let n_edges: usize = (1..5).map(|n| edges_of(&result.mesh, n)).sum();
         assert_eq!(result.mesh.n_vertices() + n_faces, n_edges + 2);
-        for v in result.name.iter() {
+        for v in &result.name {
             assert!(v.index() < result.mesh.n_vertices());
         }
         for (v, of) in result.mesh.positions().iter().zip(result.from.iter()) {

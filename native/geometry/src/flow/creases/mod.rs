@@ -14,7 +14,7 @@ mod rows;
 mod seams;
 
 use crate::flow::field::OrientationField;
-use crate::flow::quads::FirmEdges;
+use crate::flow::guides::FirmEdges;
 use crate::measure::angle_between;
 use crate::mesh::{HalfedgeId, HalfedgeMap, TriangleMesh, VertexId, VertexMap};
 

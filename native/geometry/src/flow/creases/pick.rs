@@ -129,6 +129,7 @@ impl Line {
     }
 
     /// The same as one that has to be met.
+    #[must_use]
     pub fn firm(self) -> Self {
         Self {
             is_firm: true,

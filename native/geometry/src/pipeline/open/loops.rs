@@ -20,6 +20,11 @@ const NEAR: f64 = 1.0;
 pub struct Loops(Vec<Vec<VertexId>>);
 
 impl Loops {
+    /// All borders of an open mesh.
+    pub fn all(open: &TriangleMesh) -> Self {
+        Self::new(open, &HalfedgeMap::filled(3 * open.n_faces(), true))
+    }
+
     /// Those of an open mesh that are still borders once it is closed.
     pub fn new(open: &TriangleMesh, border: &HalfedgeMap<bool>) -> Self {
         let loops = open.border_loops().into_iter();

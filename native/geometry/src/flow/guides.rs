@@ -1,0 +1,28 @@
+//! What quads have to heed besides the shape.
+
+use crate::mesh::{HalfedgeId, HalfedgeMap, VertexMap};
+use crate::mirror::Doubled;
+
+/// What of a surface's triangles the quads have to heed besides the shape.
+#[derive(Clone, Copy, Debug)]
+pub struct Guides<'a> {
+    /// Edges that are lines whatever their angle, on both sides of each.
+    pub lines: &'a HalfedgeMap<bool>,
+    /// Those of them that somebody marked: they stay lines where sharp edges are not clear.
+    pub marked: &'a HalfedgeMap<bool>,
+    /// Those of them that have to be met, such as borders: closed lines, or ones that end in others.
+    pub firm: Option<&'a FirmEdges>,
+    /// That the surface is its own image in a plane, and the quads shall be.
+    pub mirror: Option<&'a Doubled>,
+}
+
+/// Edges along which quads have to lie.
+#[derive(Clone, PartialEq, Debug)]
+pub struct FirmEdges {
+    /// Which edges they are, on both sides of each.
+    pub is_on: HalfedgeMap<bool>,
+    /// Where two of them make a corner of quads.
+    pub is_corner: VertexMap<bool>,
+    /// Loops of them, two and two, along which as many quads shall lie.
+    pub twins: Vec<[Vec<HalfedgeId>; 2]>,
+}

@@ -1,0 +1,191 @@
+//! The even surface that quads flow on, and the settings that are tried on it.
+
+use crate::deform::Target;
+use crate::flow::{self, FirmEdges};
+use crate::mesh::HalfedgeMap;
+use crate::mirror::Doubled;
+use crate::pipeline::attempt::{Attempt, Budget};
+use crate::pipeline::clock::Clock;
+use crate::pipeline::even::{Even, Marked};
+use crate::pipeline::flow::Asked;
+use crate::pipeline::flowed::{FlowedPart, better};
+use crate::pipeline::open::Opening;
+use crate::pipeline::rods;
+use crate::progress::{Cancelled, Progress};
+use crate::sphere;
+use crate::sphere_map::SphereMap;
+
+/// Of the marked edges this share may be lost before other settings are tried: short ones are.
+const MOST_LOST: f64 = 0.1;
+
+/// An even surface and what its quads are fitted to.
+pub struct Ground<'a> {
+    pub surface: Surface,
+    pub sphere: sphere::Report,
+    pub target: &'a Target,
+    /// The marked edges of the target.
+    pub wanted: Marked,
+    pub asked: Asked<'a>,
+    pub style: flow::Settings,
+}
+
+/// An even surface, with those of its edges that quads heed.
+pub struct Surface {
+    pub even: SphereMap,
+    /// The edges that lie along the target's sharp or marked ones.
+    pub lines: HalfedgeMap<bool>,
+    /// Those that lie along marked ones.
+    pub marked: HalfedgeMap<bool>,
+    /// Those that lie along borders of a part that was closed.
+    pub border: Option<FirmEdges>,
+    /// Whose image is whose, where the surface is its own image.
+    pub doubled: Option<Doubled>,
+}
+
+/// Why an attempt gave no quads.
+pub struct Refusal {
+    pub reason: String,
+    /// Whether it had too many.
+    pub is_over: bool,
+}
+
+impl Surface {
+    /// An even surface, its edges along borders firm if it is one of a part that was closed.
+    pub fn new(even: Even, opening: Option<&Opening>) -> Self {
+        let border = opening.zip(even.border);
+        Self {
+            border: border.map(|(opening, is_on)| opening.firm(even.map.mesh(), is_on)),
+            even: even.map,
+            lines: even.lines,
+            marked: even.marked,
+            doubled: None,
+        }
+    }
+
+    /// One that is its own image, with the edges of this one.
+    pub fn doubled(
+        &self,
+        (even, doubled): (SphereMap, Doubled),
+        opening: Option<&Opening>,
+    ) -> Self {
+        let carried = |edges| doubled.carried(self.even.mesh(), edges);
+        let border = opening.zip(self.border.as_ref());
+        Self {
+            lines: carried(&self.lines),
+            marked: carried(&self.marked),
+            border: border
+                .map(|(opening, firm)| opening.firm(doubled.mesh(), carried(&firm.is_on))),
+            even,
+            doubled: Some(doubled),
+        }
+    }
+
+    /// What quads on it have to heed.
+    pub fn guides(&self) -> flow::Guides<'_> {
+        flow::Guides {
+            lines: &self.lines,
+            marked: &self.marked,
+            firm: self.border.as_ref(),
+            mirror: self.doubled.as_ref(),
+        }
+    }
+}
+
+impl Ground<'_> {
+    /// The first of the attempts in which nothing fails, or the one in which least does of those that
+    /// the budget has room for; one more is worth the marks that it may meet.
+    pub fn best(
+        &self,
+        budget: &mut Budget,
+        clock: &mut Clock,
+        progress: &Progress<'_>,
+    ) -> Result<Result<FlowedPart, String>, Cancelled> {
+        let mut best: Result<FlowedPart, String> = Err(String::new());
+        let mut from = 0.0;
+        for attempt in Attempt::ALL {
+            let kept_back = self.kept_back(attempt, &best, budget);
+            if !self.may_help(attempt, &best, budget) || !budget.take(attempt, kept_back) {
+                continue;
+            }
+            let to = from + 0.6 * (1.0 - from);
+            let found = self.attempt(attempt, clock, &progress.part("", from, to))?;
+            from = to;
+            budget.is_over |= matches!(found, Err(Refusal { is_over: true, .. }));
+            let found = found.map_err(|refusal| refusal.reason);
+            best = better(best, found.and_then(FlowedPart::not_cut_off));
+            let is_usual = attempt == Attempt::Usual;
+            let is_failing = best.as_ref().map_or(true, |best| best.n_failed() > 0);
+            if is_usual && is_failing && self.asked.opening.is_none() {
+                best = better(best, self.rings(clock, &progress.part("", from, from))?);
+            }
+            let is_done =
+                |best: &FlowedPart| best.n_failed() == 0 && (best.lost <= MOST_LOST || !is_usual);
+            if best.as_ref().is_ok_and(is_done) {
+                break;
+            }
+        }
+        Ok(best)
+    }
+
+    /// Whether an attempt may be better than the best so far.
+    fn may_help(
+        &self,
+        attempt: Attempt,
+        best: &Result<FlowedPart, String>,
+        budget: &Budget,
+    ) -> bool {
+        // Where a solid's creases are not met other settings do not help.
+        if self.is_solid() && attempt != Attempt::Usual {
+            return false;
+        }
+        // Without strips nothing is its own image.
+        let is_flowing = best.as_ref().is_ok_and(|best| !best.is_last_resort());
+        // Nor do lines stay that have to be met.
+        let is_bound = self.surface.doubled.is_some() || self.asked.opening.is_some();
+        if attempt.is_last_resort() && (is_flowing || is_bound) {
+            return false;
+        }
+        // Without too many quads there is nothing to take out.
+        let has_room = attempt != Attempt::Thinned || budget.is_over;
+        has_room && attempt.is_worth_trying(&self.style)
+    }
+
+    /// Rings, if the part is one limb from end to end.
+    fn rings(
+        &self,
+        clock: &mut Clock,
+        progress: &Progress<'_>,
+    ) -> Result<Result<FlowedPart, String>, Cancelled> {
+        let ground = (self.target, &self.wanted);
+        rods::rings(&self.surface.even, ground, self.asked, (clock, progress))
+    }
+
+    /// What of the budget an attempt leaves for what comes when no more settings are tried here.
+    fn kept_back(
+        &self,
+        attempt: Attempt,
+        best: &Result<FlowedPart, String>,
+        budget: &Budget,
+    ) -> usize {
+        if attempt == Attempt::Usual || attempt.is_last_resort() {
+            return 0;
+        }
+        let is_symmetric = self.surface.doubled.is_some();
+        match best {
+            Ok(best) => usize::from(is_symmetric && best.n_missed > 0),
+            // Strips are not taken out of quads with borders.
+            Err(_) if self.asked.opening.is_some() => usize::from(is_symmetric),
+            Err(_) => budget.kept_back(is_symmetric),
+        }
+    }
+
+    /// Whether there are lines that have to be met.
+    pub fn keeps_lines(&self) -> bool {
+        self.is_solid() || self.asked.opening.is_some()
+    }
+
+    /// Whether all sharp edges are followed.
+    fn is_solid(&self) -> bool {
+        self.style.creases == flow::Creases::All
+    }
+}

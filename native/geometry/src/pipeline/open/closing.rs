@@ -1,0 +1,264 @@
+//! Closes a part that has borders or handles: all of it, and a coarser version for the map.
+
+use std::f64::consts::TAU;
+
+use glam::DVec3;
+
+use super::loops::Loops;
+use super::puncture::{self, Puncture};
+use super::sheet::folds;
+use super::{Corner, Opening, SAME, polyline};
+use crate::close::{self, Closed, handles};
+use crate::decimate;
+use crate::deform::Target;
+use crate::measure::{Polyline, Topology, topology_of_triangles, total_area};
+use crate::mesh::{HalfedgeMap, Id, TriangleMesh, VertexId, VertexMap};
+use crate::pipeline::borders::Opened;
+use crate::pipeline::even::Marked;
+use crate::pipeline::{Error, Settings};
+use crate::progress::{Cancelled, Progress};
+
+/// A part that was closed.
+pub struct Closing {
+    /// The part, open and without handles.
+    pub(super) open: TriangleMesh,
+    pub(super) closed: Closed,
+    /// Where handles were cut.
+    cuts: Vec<Polyline>,
+    /// The borders that are made once there are quads, for they are shorter than a few of them.
+    punctures: Vec<Puncture>,
+    /// The shape that is to come out.
+    wanted: Topology,
+    /// What is told of its borders.
+    pub(super) told: Option<Opened>,
+    /// Borders up to this length are filled for good.
+    pub(super) asked: f64,
+}
+
+/// A part reduced to the size of the map and closed.
+pub struct Small {
+    pub mesh: TriangleMesh,
+    /// Its edges between real and virtual faces, on both sides of each.
+    pub border: HalfedgeMap<bool>,
+    /// The same as loops.
+    loops: Loops,
+    /// Which of its vertices are inside caps.
+    is_in_cap: VertexMap<bool>,
+    pub report: Option<decimate::Report>,
+}
+
+/// Up to which length borders are closed before quads are made.
+struct Limits {
+    /// Up to this one the settings have them filled for good.
+    asked: f64,
+    /// Up to this one they are punctures, opened again once there are quads.
+    puncture: f64,
+    /// No border as long as this is closed: those of cuts are needed, and the shortest of them is
+    /// hardly longer.
+    below: f64,
+}
+
+impl Closing {
+    /// Cuts the handles of a part that is to get so many faces, and closes its borders; none if it
+    /// has neither.
+    ///
+    /// # Errors
+    /// A part that cannot be closed; when cancelled.
+    pub fn new(
+        part: &TriangleMesh,
+        (settings, n_faces): (&Settings, usize),
+        progress: &Progress<'_>,
+    ) -> Result<Option<Self>, Error> {
+        let shape = topology_of_triangles(part);
+        if shape.closed && shape.genus == Some(0) {
+            return Ok(None);
+        }
+        let cut = handles::cut(part, progress)?;
+        let area = total_area(part);
+        let edge = (area / n_faces.max(1) as f64).sqrt();
+        let limits = Limits::new(settings.close().fill, &cut, (area, edge));
+        let borders: Vec<Polyline> = Loops::all(&cut.mesh).closed_lines(&cut.mesh).collect();
+        let is_filled = |border: &&Polyline| border.length() <= limits.filled();
+        let n_filled = borders.iter().filter(is_filled).count();
+        let n_filled = n_filled.min(shape.n_borders);
+        let n_borders = shape.n_borders - n_filled;
+        let punctures = borders
+            .into_iter()
+            .filter(|border| limits.is_puncture(border.length()))
+            .map(|border| Puncture::new(border, edge))
+            .collect();
+        let settings = close::Settings {
+            fill: close::Fill::UpTo(limits.closed()),
+            ..close::Settings::default()
+        };
+        let closed = close::close(&cut.mesh, &settings, progress)?;
+        let cuts = cut.twins.iter().map(|[one, _]| polyline(&cut.mesh, one));
+        Ok(Some(Self {
+            cuts: cuts.collect(),
+            punctures,
+            wanted: Topology {
+                n_borders,
+                closed: n_borders == 0,
+                ..shape
+            },
+            told: Opened::new([shape.n_borders, n_filled], closed.n_doubled > 0),
+            asked: limits.filled(),
+            closed,
+            open: cut.mesh,
+        }))
+    }
+
+    /// What is told of it.
+    pub fn told(&self) -> Option<Opened> {
+        self.told
+    }
+
+    /// Whether all its borders were filled for good: then nothing is opened again.
+    pub fn is_filled(&self) -> bool {
+        let n_open = self.closed.n_capped + self.closed.n_doubled + self.punctures.len();
+        n_open == 0
+    }
+
+    /// The part, closed; all of it.
+    pub fn into_mesh(self) -> TriangleMesh {
+        self.closed.mesh
+    }
+
+    /// The part, closed.
+    pub fn mesh(&self) -> &TriangleMesh {
+        &self.closed.mesh
+    }
+
+    /// The edges of the closed part between real and virtual faces, on both sides of each.
+    pub fn border(&self) -> HalfedgeMap<bool> {
+        self.closed.border()
+    }
+
+    /// The part reduced to a number of faces, if it has more, and closed.
+    ///
+    /// # Errors
+    /// A part that cannot be reduced or closed; when cancelled.
+    pub fn reduced(&self, n_faces: usize, progress: &Progress<'_>) -> Result<Small, Error> {
+        let share = self.closed.mesh.n_faces() as f64 / self.open.n_faces() as f64;
+        let n_faces = (n_faces as f64 / share) as usize;
+        if self.open.n_faces() <= n_faces {
+            return Ok(Small::new(&self.open, self.closed.clone(), None));
+        }
+        let settings = decimate::Settings { n_faces };
+        let coarse = decimate::simplify(&self.open, &settings, progress)?;
+        let closed = close::close(&coarse.mesh, &self.alike(&coarse.mesh), progress)?;
+        Ok(Small::new(&coarse.mesh, closed, Some(coarse.report)))
+    }
+
+    /// How a coarser version is closed the same way: the shortest loops are filled, as many.
+    fn alike(&self, coarse: &TriangleMesh) -> close::Settings {
+        let mut lengths = Loops::all(coarse).lengths(coarse);
+        lengths.sort_by(f64::total_cmp);
+        let fill = match self.closed.n_filled {
+            0 => close::Fill::None,
+            n if n >= lengths.len() => close::Fill::All,
+            n => close::Fill::UpTo(f64::midpoint(lengths[n - 1], lengths[n])),
+        };
+        let way = match self.closed.n_doubled {
+            0 => close::Way::Cap,
+            _ => close::Way::Double,
+        };
+        close::Settings { fill, way }
+    }
+
+    /// What the quads have to keep to, and what of them is kept.
+    ///
+    /// # Errors
+    /// When cancelled.
+    pub fn opening(
+        self,
+        small: &Small,
+        n_faces: usize,
+        progress: &Progress<'_>,
+    ) -> Result<Opening, Cancelled> {
+        let mesh = &self.closed.mesh;
+        let on_border = self.closed.border();
+        let edge = (total_area(mesh) / n_faces.max(1) as f64).sqrt();
+        // Where a handle was cut the surface goes on.
+        let is_cut = |p: DVec3| self.cuts.iter().any(|cut| cut.distance(p) < SAME);
+        let mut corners = Loops::new(&self.open, &on_border).corners(mesh, edge);
+        corners.retain(|&corner| !is_cut(corner));
+        let between = small.loops.lines(&small.mesh, (&corners, edge));
+        let corners = between.iter().filter_map(|line| {
+            let along = &line.line.vertices;
+            let [first, last] = line.ends?;
+            Some([(along[0], first), (along[along.len() - 1], last)])
+        });
+        let corners = corners.flatten().map(|(v, goal)| Corner {
+            on_map: small.mesh.position(v),
+            goal,
+        });
+        Ok(Opening {
+            corners: corners.collect(),
+            lines: between.into_iter().map(|line| line.line).collect(),
+            small: small.border.clone(),
+            is_in_cap: small.is_in_cap.clone(),
+            edges: Marked::new(mesh, &on_border),
+            folds: Marked::new(mesh, &folds(&self.closed)),
+            bare: Target::new(self.real(), progress)?,
+            cuts: self.cuts,
+            punctures: self.punctures,
+            wanted: self.wanted,
+            is_real: self.closed.is_real,
+        })
+    }
+}
+
+impl Small {
+    /// An open mesh that was closed.
+    fn new(open: &TriangleMesh, closed: Closed, report: Option<decimate::Report>) -> Self {
+        let border = closed.border();
+        Self {
+            loops: Loops::new(open, &border),
+            is_in_cap: in_caps(open, &closed),
+            border,
+            mesh: closed.mesh,
+            report,
+        }
+    }
+}
+
+impl Limits {
+    /// Those of a part of some area that is to get quads of some edge length.
+    fn new(fill: close::Fill, cut: &handles::Cut, (area, edge): (f64, f64)) -> Self {
+        let of_cuts = cut.twins.iter().map(|[one, _]| polyline(&cut.mesh, one));
+        let shortest = of_cuts.fold(f64::INFINITY, |least, cut| least.min(cut.length()));
+        // A circle of length l has the area l²/4π.
+        let round = (puncture::LARGEST * area * TAU * 2.0).sqrt();
+        Self {
+            asked: match fill {
+                close::Fill::None => 0.0,
+                close::Fill::UpTo(longest) => longest,
+                close::Fill::All => f64::INFINITY,
+            },
+            puncture: (puncture::LONGEST * edge).min(round),
+            below: shortest * (1.0 - SAME),
+        }
+    }
+
+    /// Up to which length they are filled for good.
+    fn filled(&self) -> f64 {
+        self.asked.min(self.below)
+    }
+
+    /// Up to which length they are closed before quads are made.
+    fn closed(&self) -> f64 {
+        self.asked.max(self.puncture).min(self.below)
+    }
+
+    /// Whether a border of some length is closed, but not for good.
+    fn is_puncture(&self, length: f64) -> bool {
+        length > self.filled() && length <= self.closed()
+    }
+}
+
+/// Which vertices of a closed mesh came with caps; none where a side lies on another.
+fn in_caps(open: &TriangleMesh, closed: &Closed) -> VertexMap<bool> {
+    let is_new = |v: VertexId| closed.n_doubled == 0 && v.index() >= open.n_vertices();
+    closed.mesh.vertex_ids().map(is_new).collect()
+}
