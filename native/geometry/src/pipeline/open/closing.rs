@@ -232,7 +232,8 @@ impl Limits {
         let round = (puncture::LARGEST * area * TAU * 2.0).sqrt();
         Self {
             asked: match fill {
-                close::Fill::None => 0.0,
+                // Not even those of no length.
+                close::Fill::None => f64::NEG_INFINITY,
                 close::Fill::UpTo(longest) => longest,
                 close::Fill::All => f64::INFINITY,
             },
