@@ -45,7 +45,10 @@ impl<'a> Stops<'a> {
             unit / density.sqrt()
         };
         let mut sizes: Vec<f64> = lines.iter().map(size).collect();
-        let n_steps = lines.iter().zip(&sizes).map(|(line, size)| line.length() / size);
+        let n_steps = lines
+            .iter()
+            .zip(&sizes)
+            .map(|(line, size)| line.length() / size);
         let n_steps = n_steps.sum::<f64>();
         let most = MOST_STEPS * n_faces as f64;
         if n_steps > most {
