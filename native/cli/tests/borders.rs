@@ -102,7 +102,8 @@ struct Done {
 
 impl Done {
     fn topologies(&self) -> [Topology; 2] {
-        [&self.input, &self.output].map(|mesh| topology(mesh, &Progress::none()).unwrap())
+        [&self.input, &self.output]
+            .map(|mesh| topology(mesh, &Progress::none()).expect("nobody cancels"))
     }
 }
 
@@ -115,10 +116,11 @@ fn remesh(text: &str, more: &[&str]) -> Done {
     ];
     let done = run(&[&usual[..], more].concat());
     assert_eq!(done.code, 0, "{}", done.err);
+    let report = fs::read_to_string(report).expect("a report was written");
     Done {
         input: mesh(text),
-        output: mesh(&fs::read_to_string(output).unwrap()),
-        report: serde_json::from_str(&fs::read_to_string(report).unwrap()).unwrap(),
+        output: mesh(&fs::read_to_string(output).expect("a result was written")),
+        report: serde_json::from_str(&report).expect("a report is JSON"),
         err: done.err,
     }
 }
@@ -151,7 +153,7 @@ fn a_plate_stays_a_plate_with_its_corners() {
     assert!(off_border(&done.input, &done.output) < 1e-3);
     for (x, y) in [(0.0, 0.0), (1.5, 0.0), (0.0, 1.0), (1.5, 1.0)] {
         let is_there = |p: [f64; 3]| (p[0] - x).abs() + (p[1] - y).abs() + p[2].abs() < 1e-5;
-        let mut places = done.output.positions().iter().map(|p| p.to_array());
+        let mut places = done.output.positions().iter().map(|&p| <[f64; 3]>::from(p));
         assert!(places.any(is_there), "({x}, {y})");
     }
     assert_eq!(done.report["parts"][0]["opened"]["way"], "doubled");
