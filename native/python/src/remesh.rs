@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use numpy::{PyArray1, PyArray2, PyArray3};
+use orbflow_geometry::mesh::VertexId;
 use orbflow_geometry::pipeline::{self, Borders, Input, Settings, Style};
 use orbflow_geometry::score;
 use pyo3::exceptions::PyValueError;
@@ -130,9 +131,7 @@ pub fn remesh<'py>(
     let pairs = |array: Option<_>, kind| array.map(|a| arrays::vertex_pairs(a, kind)).transpose();
     let marked = pairs(marked_edges, "marked")?;
     let carried = pairs(carried_edges, "carried")?;
-    let cut = |set: &Bound<'py, PyAny>| arrays::vertex_pairs(set, "cut");
-    let cuts = cut_edges.map(|sets| sets.iter().map(cut).collect::<PyResult<Vec<_>>>());
-    let cuts = cuts.transpose()?;
+    let cuts = cut_edges.as_deref().map(cuts).transpose()?;
     let density = density.map(arrays::densities).transpose()?;
     let reduced = reduced
         .map(|(points, triangles)| arrays::triangles(&points, &triangles, scale))
@@ -178,6 +177,12 @@ pub fn remesh<'py>(
     })?;
     remeshed.report.kept = errors::unscaled(&remeshed.report.kept, scale);
     Remeshed::new(py, &remeshed, scale)
+}
+
+/// The sets of edges along which data is cut.
+fn cuts(sets: &[Bound<'_, PyAny>]) -> PyResult<Vec<Vec<[VertexId; 2]>>> {
+    let cut = |set| arrays::vertex_pairs(set, "cut");
+    sets.iter().map(cut).collect()
 }
 
 /// What becomes of borders, by a word and a size.
