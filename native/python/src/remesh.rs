@@ -131,7 +131,7 @@ pub fn remesh<'py>(
     let pairs = |array: Option<_>, kind| array.map(|a| arrays::vertex_pairs(a, kind)).transpose();
     let marked = pairs(marked_edges, "marked")?;
     let carried = pairs(carried_edges, "carried")?;
-    let cuts = cut_edges.as_deref().map(cuts).transpose()?;
+    let cuts = cut_edges.map(cuts).transpose()?;
     let density = density.map(arrays::densities).transpose()?;
     let reduced = reduced
         .map(|(points, triangles)| arrays::triangles(&points, &triangles, scale))
@@ -180,9 +180,9 @@ pub fn remesh<'py>(
 }
 
 /// The sets of edges along which data is cut.
-fn cuts(sets: &[Bound<'_, PyAny>]) -> PyResult<Vec<Vec<[VertexId; 2]>>> {
-    let cut = |set| arrays::vertex_pairs(set, "cut");
-    sets.iter().map(cut).collect()
+fn cuts(sets: Vec<Bound<'_, PyAny>>) -> PyResult<Vec<Vec<[VertexId; 2]>>> {
+    let cut = |set| arrays::vertex_pairs(&set, "cut");
+    sets.into_iter().map(cut).collect()
 }
 
 /// What becomes of borders, by a word and a size.

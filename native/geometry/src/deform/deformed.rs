@@ -13,7 +13,7 @@ impl Deformed {
     /// on sharp lines, each once, in order. What is inverted or crosses is counted.
     ///
     /// # Errors
-    /// Faces that do not cover the sphere once, and [`Cancelled`](crate::progress::Cancelled).
+    /// Faces that do not cover the sphere once, and [`Cancelled`].
     pub fn laid(
         mesh: PolygonMesh,
         sphere: Vec<DVec3>,
