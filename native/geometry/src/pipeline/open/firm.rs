@@ -1,10 +1,10 @@
 //! The edges along borders that quads have to meet.
 
+use super::loops::chains;
 use super::{Opening, SAME, is_same};
 use crate::flow::FirmEdges;
-use crate::groups::Groups;
 use crate::measure::Polyline;
-use crate::mesh::{HalfedgeId, HalfedgeMap, Id, TriangleMesh, VertexMap};
+use crate::mesh::{HalfedgeId, HalfedgeMap, TriangleMesh, VertexMap};
 
 impl Opening {
     /// Some edges of a surface that was made along the borders, with the borders' corners.
@@ -27,20 +27,11 @@ impl Opening {
         if self.cuts.is_empty() {
             return Vec::new();
         }
-        let mut groups = Groups::new(mesh.n_vertices());
-        let on = || mesh.halfedge_ids().filter(|&h| is_on[h]);
-        for h in on() {
-            groups.link(mesh.origin(h).index(), mesh.target(h).index());
-        }
-        let (group, n_groups) = groups.numbered();
-        let mut loops = vec![Vec::new(); n_groups];
-        for h in on() {
-            loops[group[mesh.origin(h).index()] as usize].push(h);
-        }
+        let loops = chains(mesh, is_on);
         let along = |cut: &Polyline| {
             let lies = |edges: &&Vec<HalfedgeId>| {
                 let mut places = edges.iter().map(|&h| mesh.position(mesh.origin(h)));
-                !edges.is_empty() && places.all(|p| cut.distance(p) < SAME)
+                places.all(|p| cut.distance(p) < SAME)
             };
             loops.iter().filter(lies).cloned().collect::<Vec<_>>()
         };

@@ -30,7 +30,6 @@ impl Opening {
         if self.edges.is_empty() {
             return Ok(Held::default());
         }
-        let border = self.edges.tree(progress)?;
         let own = Marked::new(map.mesh(), &self.small).tree(progress)?;
         let at = |v: VertexId| map.surface_position(map.locate(made.primitive.position(v)));
         // Of a solid's lines not all are borders.
@@ -41,15 +40,7 @@ impl Opening {
             lies(a, SAME) && lies(b, SAME) && lies(a.midpoint(b), bend)
         };
         let edges: Vec<[VertexId; 2]> = made.on_lines.iter().filter(is_border).copied().collect();
-        let place = |v: VertexId| {
-            let p = at(v);
-            let corner = self.corners.iter().find(|corner| is_same(corner.on_map, p));
-            corner.map_or_else(|| border.closest(p).position, |corner| corner.goal)
-        };
-        Ok(Held {
-            goals: ends_of(&edges).into_iter().map(|v| (v, place(v))).collect(),
-            edges,
-        })
+        Ok(self.held_at(&edges, at, progress)?)
     }
 
     /// Holds a primitive whose lines are borders, all of them.

@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 
+use crate::groups::Groups;
 use crate::measure::{FeatureLine, Polyline, angle_between};
-use crate::mesh::{HalfedgeMap, TriangleMesh, VertexId};
+use crate::mesh::{HalfedgeId, HalfedgeMap, Id, TriangleMesh, VertexId};
 
 /// A border has a corner where it turns by more than this from one half of an edge of a quad to the
 /// next (50°).
@@ -80,6 +81,22 @@ impl Loops {
             .flat_map(|(border, ends)| between(mesh, border, ends))
             .collect()
     }
+}
+
+/// Edges on both sides of each, those that hang together in one list.
+pub fn chains(mesh: &TriangleMesh, is_on: &HalfedgeMap<bool>) -> Vec<Vec<HalfedgeId>> {
+    let on = || mesh.halfedge_ids().filter(|&h| is_on[h]);
+    let mut groups = Groups::new(mesh.n_vertices());
+    for h in on() {
+        groups.link(mesh.origin(h).index(), mesh.target(h).index());
+    }
+    let (group, n_groups) = groups.numbered();
+    let mut chains = vec![Vec::new(); n_groups];
+    for h in on() {
+        chains[group[mesh.origin(h).index()] as usize].push(h);
+    }
+    chains.retain(|chain| !chain.is_empty());
+    chains
 }
 
 /// A line along a border.

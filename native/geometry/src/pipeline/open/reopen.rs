@@ -148,17 +148,10 @@ fn patches(
     border: &[[VertexId; 2]],
     progress: &Progress<'_>,
 ) -> Result<(Vec<u32>, usize), Cancelled> {
-    let border: HashSet<[VertexId; 2]> =
-        border.iter().map(|&[a, b]| [a.min(b), a.max(b)]).collect();
-    let edges = PolygonEdges::new(mesh, progress)?;
     let mut groups = Groups::new(mesh.n_faces());
-    for c in 0..edges.n_corners() {
-        let Some(twin) = edges.twin(c).filter(|&twin| c < twin) else {
-            continue;
-        };
-        if !border.contains(&edges.ends[edges.of_corner[c] as usize]) {
-            let [a, b] = [c, twin].map(|c| edges.face_of[c] as usize);
-            groups.link(a, b);
+    for (face, around) in neighbours(mesh, border, progress)?.iter().enumerate() {
+        for &(other, _) in around.iter().filter(|(_, is_beyond)| !is_beyond) {
+            groups.link(face, other);
         }
     }
     Ok(groups.numbered())
@@ -170,18 +163,27 @@ fn sides(
     border: &[[VertexId; 2]],
     progress: &Progress<'_>,
 ) -> Result<Vec<bool>, Cancelled> {
+    Ok(coloured(&neighbours(mesh, border, progress)?))
+}
+
+/// The neighbours of every face, and whether each lies beyond one of some edges.
+fn neighbours(
+    mesh: &PolygonMesh,
+    border: &[[VertexId; 2]],
+    progress: &Progress<'_>,
+) -> Result<Vec<Vec<(usize, bool)>>, Cancelled> {
     let border: HashSet<[VertexId; 2]> =
         border.iter().map(|&[a, b]| [a.min(b), a.max(b)]).collect();
     let edges = PolygonEdges::new(mesh, progress)?;
-    let mut beyond = vec![Vec::new(); mesh.n_faces()];
+    let mut neighbours = vec![Vec::new(); mesh.n_faces()];
     for c in 0..edges.n_corners() {
         if let Some(twin) = edges.twin(c) {
             let ends = edges.ends[edges.of_corner[c] as usize];
             let [own, other] = [c, twin].map(|c| edges.face_of[c] as usize);
-            beyond[own].push((other, border.contains(&ends)));
+            neighbours[own].push((other, border.contains(&ends)));
         }
     }
-    Ok(coloured(&beyond))
+    Ok(neighbours)
 }
 
 /// The faces of a closed part that are real: the first one, and so on across its borders.

@@ -1,5 +1,6 @@
 //! Sheets, which were closed by a second side: where the sides meet, and which is the real one.
 
+use super::loops::chains;
 use super::{Opening, SAME};
 use crate::close::Closed;
 use crate::deform::Target;
@@ -82,17 +83,13 @@ impl Opening {
 pub(super) fn folds(closed: &Closed) -> HalfedgeMap<bool> {
     let (mesh, border) = (&closed.mesh, closed.border());
     let apex = |h: HalfedgeId| mesh.position(mesh.origin(h.prev()));
-    let mut groups = Groups::new(mesh.n_vertices());
-    for h in mesh.halfedge_ids().filter(|&h| border[h]) {
-        groups.link(mesh.origin(h).index(), mesh.target(h).index());
+    let is_image = |h: &HalfedgeId| mesh.twin(*h).is_some_and(|twin| apex(*h) == apex(twin));
+    let mut is_fold = HalfedgeMap::filled(border.len(), false);
+    for chain in chains(mesh, &border) {
+        let n_images = chain.iter().filter(|h| is_image(h)).count();
+        for &h in chain.iter().filter(|_| 2 * n_images > chain.len()) {
+            is_fold[h] = true;
+        }
     }
-    let (group, n_groups) = groups.numbered();
-    let of = |h: HalfedgeId| group[mesh.origin(h).index()] as usize;
-    let mut votes = vec![0_i64; n_groups];
-    for h in mesh.halfedge_ids().filter(|&h| border[h]) {
-        let is_image = mesh.twin(h).is_some_and(|twin| apex(h) == apex(twin));
-        votes[of(h)] += if is_image { 1 } else { -1 };
-    }
-    let is_fold = |h| border[h] && votes[of(h)] > 0;
-    mesh.halfedge_ids().map(is_fold).collect()
+    is_fold
 }
