@@ -51,7 +51,7 @@ def corners_ahead(starts: NDArray[np.integer], n_corners: int) -> NDArray[np.int
     """The corner that follows each in its face, whose corners start at these, (L,)."""
     ahead = np.arange(1, n_corners + 1)
     # The last corner of a face is followed by its first.
-    ahead[np.append(starts[1:], n_corners) - 1] = starts
+    ahead[np.append(starts, n_corners)[1:] - 1] = starts
     return ahead
 
 

@@ -2,7 +2,8 @@
 """Marks the irregular vertices of the active mesh, and the field behind them, in the 3D view.
 
 Where fewer edges meet than on a regular grid a vertex is blue if one is missing, red if there is
-one too many, black otherwise. Vertices on a border are left out: their valence says nothing.
+one too many, black otherwise. On a border as many faces are right as their angles have room there:
+two along a straight one (three edges), one at its corners.
 
 What is drawn is kept from one redraw to the next: to read a large mesh takes longer than a frame.
 """
@@ -132,16 +133,37 @@ def keep_ticks(scene: bpy.types.Scene) -> None:
 
 
 def irregular(mesh: bpy.types.Mesh) -> Irregular:
-    """Finds the irregular vertices: not of valence 4 among quads, not of 6 among triangles."""
+    """Finds the irregular vertices: not of valence 4 among quads, not of 6 among triangles.
+
+    On a border one edge more than faces of 90° (quads) or 60° fill the angle there.
+    """
     n = len(mesh.vertices)
     edges, sides = attributes.edge_verts(mesh), attributes.corner_edges(mesh)
-    is_border = np.zeros(n, bool)
-    is_border[edges[np.bincount(sides, minlength=len(edges)) != 2]] = True
+    n_sides = np.bincount(sides, minlength=len(edges))
+    is_border, is_tangled = np.zeros(n, bool), np.zeros(n, bool)
+    is_border[edges[n_sides == 1]] = True
+    is_tangled[edges[(n_sides != 1) & (n_sides != 2)]] = True
     valence = np.bincount(edges.ravel(), minlength=n)
-    regular = 4 if 2 * len(mesh.loops) > 7 * len(mesh.polygons) else 6
-    excess = np.where(is_border | (valence == 0), 0, valence - regular)
+    inside = 4 if 2 * len(mesh.loops) > 7 * len(mesh.polygons) else 6
     positions = attributes.positions(mesh)
+    faces = np.rint(_angles(mesh, positions) / (2 * math.pi / inside))
+    regular = np.where(is_border, np.maximum(faces, 1) + 1, inside).astype(int)
+    excess = np.where(is_tangled | (valence == 0), 0, valence - regular)
     return Irregular(positions[excess == -1], positions[excess == 1], positions[np.abs(excess) > 1])
+
+
+def _angles(mesh: bpy.types.Mesh, positions: NDArray[np.float32]) -> NDArray[np.float64]:
+    """The angles of all faces at every vertex, added, (V,), in radians."""
+    corners = attributes.corner_verts(mesh)
+    ahead = attributes.corners_ahead(attributes.loop_starts(mesh), len(corners))
+    behind = np.empty_like(ahead)
+    behind[ahead] = np.arange(len(ahead))
+    first, second = (
+        (positions[corners[to]] - positions[corners]).astype(np.float64) for to in (ahead, behind)
+    )
+    sine = np.linalg.norm(np.cross(first, second), axis=1)
+    angles = np.arctan2(sine, (first * second).sum(1))
+    return np.bincount(corners, angles, minlength=len(positions))
 
 
 def figures(thing: bpy.types.Object, what: str) -> list[Figure]:

@@ -24,6 +24,7 @@ _ROWS = (
     ("Faces", "n_faces", "{:,}"),
     ("Quads", "quads_pct", "{:.0f} %"),
     ("Irregular vertices", "irregular_pct", "{:.1f} %"),
+    ("Irregular on borders", "border_irregular_pct", "{:.1f} %"),
     ("Flow deviation", "alignment_deg", "{:.1f}°"),
     ("On closed loops", "loop_edges_pct", "{:.0f} %"),
     ("In spirals", "spiral_pct", "{:.0f} %"),

@@ -45,10 +45,30 @@ def test_many_edges_at_a_vertex_are_marked_by_how_many(open_fixture: Open) -> No
     assert counts(bpy.context.object.data) == (0, 0, 2)
 
 
-def test_borders_and_empty_meshes_are_left_alone(open_fixture: Open) -> None:
+def test_grids_and_empty_meshes_have_no_marks(open_fixture: Open) -> None:
     open_fixture("07")
     assert counts(bpy.data.objects["Empty"].data) == (0, 0, 0)
     bpy.ops.mesh.primitive_grid_add(x_subdivisions=4, y_subdivisions=4)
+    assert counts(bpy.context.object.data) == (0, 0, 0)
+
+
+def test_a_border_has_three_edges_at_its_vertices_and_two_at_its_corners(
+    open_fixture: Open,
+) -> None:
+    open_fixture("03")
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=4, y_subdivisions=4)
+    grid = bpy.context.object.data
+    corner, beside, across = grid.vertices[0], grid.vertices[1], grid.vertices[5]
+    # The corner is one no more: its two edges go straight on.
+    corner.co = (beside.co + across.co) / 2
+    marked = addon("overlay").irregular(grid)
+    assert counts(grid)[0] == 1
+    assert tuple(marked.fewer[0]) == tuple(corner.co)
+
+
+def test_a_border_of_triangles_has_room_for_one_every_sixty_degrees(open_fixture: Open) -> None:
+    open_fixture("03")
+    bpy.ops.mesh.primitive_circle_add(vertices=6, fill_type="TRIFAN")
     assert counts(bpy.context.object.data) == (0, 0, 0)
 
 

@@ -1,5 +1,8 @@
 //! How the edges run over the surface.
 
+use std::f64::consts::FRAC_PI_2;
+
+use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -8,7 +11,7 @@ use super::statistics::{mean, share};
 use super::surface::Surface;
 use super::watched::watched;
 use crate::elementary::atan2;
-use crate::measure::CurvatureField;
+use crate::measure::{CurvatureField, angle_between};
 use crate::mesh::{Id, VertexId};
 use crate::progress::{Cancelled, Progress};
 
@@ -28,6 +31,9 @@ pub struct Flow {
     pub irregular_pct: Option<f64>,
     /// ↓ Inner vertices with a valence of 6 or more, which artists avoid.
     pub high_valence: Option<usize>,
+    /// ↓ Share of border vertices where not one face meets for every right angle that the surface
+    /// has there: three edges along a straight border, two at its corners. None without borders.
+    pub border_irregular_pct: Option<f64>,
     /// ↓ Mean angle in degrees between the edges and the nearest of the input's two principal
     /// directions, weighted by length and by how much the curvatures differ. Random edges have 22.5.
     pub alignment_deg: Option<f64>,
@@ -51,6 +57,7 @@ pub fn flow(
     Ok(Flow {
         irregular_pct: (!valences.is_empty()).then(share_irregular),
         high_valence: Some(valences.iter().filter(|&&valence| valence >= 6).count()),
+        border_irregular_pct: border_irregular_pct(output),
         alignment_deg: Some(alignment(input, &field, output, progress)?),
     })
 }
@@ -87,6 +94,30 @@ fn inner_valences(surface: &Surface) -> Vec<u32> {
         .collect()
 }
 
+fn border_irregular_pct(surface: &Surface) -> Option<f64> {
+    let mesh = surface.mesh;
+    let is_border = surface.edges.border_vertices(mesh.n_vertices());
+    let mut angles = vec![0.0; mesh.n_vertices()];
+    for face in mesh.faces() {
+        for (i, &v) in face
+            .iter()
+            .enumerate()
+            .filter(|(_, v)| is_border[v.index()])
+        {
+            let at = |i: usize| mesh.position(face[i % face.len()]);
+            let [before, after] = [at(i + face.len() - 1), at(i + 1)].map(|p| p - at(i));
+            angles[v.index()] += angle_between(before, after);
+        }
+    }
+    let valences = surface.edges.valences(mesh.n_vertices());
+    let is_irregular = |&v: &usize| {
+        let n_right = (angles[v] / FRAC_PI_2).round().max(1.0);
+        f64::from(valences[v]) != n_right + 1.0
+    };
+    let border: Vec<usize> = (0..mesh.n_vertices()).filter(|&v| is_border[v]).collect();
+    (!border.is_empty()).then(|| 100.0 * share(&border, is_irregular))
+}
+
 fn alignment(
     input: &Surface,
     field: &CurvatureField,
@@ -120,4 +151,42 @@ fn alignment(
     let sum = |(a, b): (f64, f64), (c, d): (f64, f64)| (a + c, b + d);
     let (angles, weights) = found.into_iter().flatten().fold((0.0, 0.0), sum);
     Ok(angles / weights.max(1e-300))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::PolygonMesh;
+
+    /// Squares at these places of a plane, the vertex at the origin moved.
+    fn plate(squares: &[[u32; 2]], origin: DVec3) -> PolygonMesh {
+        let at = |i: u32| DVec3::new(f64::from(i % 4), f64::from(i / 4), 0.0);
+        let positions = std::iter::once(origin).chain((1..16).map(at)).collect();
+        let square =
+            |&[x, y]: &[u32; 2]| [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[a, b]| x + a + 4 * (y + b));
+        let faces: Vec<[u32; 4]> = squares.iter().map(square).collect();
+        PolygonMesh::from_faces(positions, &faces).unwrap()
+    }
+
+    fn found(mesh: &PolygonMesh) -> Option<f64> {
+        let surface = Surface::new(mesh, &Progress::none()).unwrap().unwrap();
+        border_irregular_pct(&surface)
+    }
+
+    #[test]
+    fn borders_are_regular_where_each_right_angle_has_its_face() {
+        let square = [[0, 0], [1, 0], [0, 1], [1, 1]];
+        assert_eq!(found(&plate(&square, DVec3::ZERO)), Some(0.0));
+        assert_eq!(found(&plate(&square[..3], DVec3::ZERO)), Some(0.0), "an L");
+        let flat = found(&plate(&square, DVec3::new(0.5, 0.5, 0.0)));
+        assert_eq!(
+            flat,
+            Some(12.5),
+            "one face of the eight vertices' has two right angles"
+        );
+        assert_eq!(
+            found(&crate::shapes::polygons(&crate::shapes::sphere(3))),
+            None
+        );
+    }
 }
