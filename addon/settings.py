@@ -203,6 +203,15 @@ class Settings:
         step=0.01,
         subtype="PERCENTAGE",
     )
+    weights_limit: IntProperty(
+        name="Weights per Vertex",
+        description=(
+            "How many bones move a vertex at most; many engines take 4. 0: as many as before"
+        ),
+        default=0,
+        min=0,
+        soft_max=8,
+    )
     predictor: EnumProperty(
         name="Predictor",
         description="Who proposes where each vertex lies on the sphere",
@@ -229,6 +238,8 @@ _OF_FLOW = {"follow_shape", "adaptivity", "density", "mirror"}
 NAMES = tuple(Settings.__annotations__)
 # Settings that say what of an object is read.
 _OF_MESH = {"density", "marked_edges", "mirror_modifier", "use_modifiers"}
+# Settings that say what is written.
+_OF_RESULT = {"weights_limit"}
 # Settings that are one with another in the core.
 _IN_OTHERS = {"use_weld"}
 
@@ -257,8 +268,8 @@ class OrbflowSettings(bpy.types.PropertyGroup, Settings):
 
 
 def for_core(source: Settings) -> dict[str, Any]:
-    """The settings as keywords of `orbflow_native.remesh`, but for those that say what is read."""
-    names = [name for name in NAMES if name not in _OF_MESH | _IN_OTHERS]
+    """The settings as keywords of `orbflow_native.remesh`; others say what is read or written."""
+    names = [name for name in NAMES if name not in _OF_MESH | _OF_RESULT | _IN_OTHERS]
     values = {name: _value(getattr(source, name)) for name in names}
     return values | {
         "sharp_angle": math.degrees(source.sharp_angle),

@@ -245,6 +245,16 @@ def test_a_vertex_has_no_more_weights_of_bones_than_one_had(open_fixture: Open) 
         assert sum(weights.values()) == pytest.approx(1, abs=1e-4)
 
 
+def test_as_few_weights_of_bones_stay_as_an_engine_takes(open_fixture: Open) -> None:
+    open_fixture("03")
+    thing = bound(9)
+    press.orbflow_remesh(faces=300, weights_limit=1)
+    for vertex in thing.data.vertices:
+        weights = {thing.vertex_groups[each.group].name: each.weight for each in vertex.groups}
+        assert weights.pop("Mask") == pytest.approx(0.5, abs=1e-4)
+        assert list(weights.values()) == pytest.approx([1], abs=1e-4)
+
+
 def test_the_largest_weights_of_bones_stay_and_keep_their_sum(open_fixture: Open) -> None:
     open_fixture("03")
     thing = bound(4)

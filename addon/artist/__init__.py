@@ -26,11 +26,13 @@ class Artist:
     elements: Elements
     groups: list[Group]
     keys: list[Key]
+    #: How many bones move a vertex of the result at most; 0: as many as one of the old mesh.
+    weights_limit: int
     #: What cannot be carried, in words.
     lost: list[str]
 
 
-def read(things: list[bpy.types.Object]) -> Artist:
+def read(things: list[bpy.types.Object], weights_limit: int = 0) -> Artist:
     """Reads what is on objects of one mesh that is not in edit mode."""
     mesh = things[0].data
     return Artist(
@@ -38,6 +40,7 @@ def read(things: list[bpy.types.Object]) -> Artist:
         elements.read(mesh),
         groups.read(things[0]),
         keys.read(mesh),
+        weights_limit,
         _lost(mesh) + [text for each in things for text in _unbound(each)],
     )
 
@@ -54,7 +57,7 @@ def write(
     mix = elements.write(thing.data, artist.elements, result)
     if mix is None:
         return
-    groups.write(thing, artist.groups, mix)
+    groups.write(thing, artist.groups, mix, artist.weights_limit)
     keys.write(thing, artist.keys, mix, old)
 
 

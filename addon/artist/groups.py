@@ -44,11 +44,11 @@ def read(thing: bpy.types.Object) -> list[Group]:
     ]
 
 
-def write(thing: bpy.types.Object, groups: list[Group], mix: Mix, limit: int | None = None) -> None:
+def write(thing: bpy.types.Object, groups: list[Group], mix: Mix, limit: int) -> None:
     """Gives an object with a new mesh the same groups.
 
-    A vertex has no more weights of bones than `limit`, or without it than the old mesh has at most.
-    Where no bones move the object, a limit is one for all groups.
+    A vertex has no more weights of bones than `limit`; with 0, than one of the old mesh has at
+    most. Where no bones move the object, a limit is one for all groups.
     """
     if limit and not any(each.is_deforming for each in groups):
         groups = [replace(each, is_deforming=True) for each in groups]

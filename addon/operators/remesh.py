@@ -213,7 +213,8 @@ def _task(
     thing, *others = things
     try:
         seen = modifiers.seen(copies, thing, stack)
-        given = artist.read([seen.thing] + [each for each in things if each != seen.thing])
+        all_of = [seen.thing] + [each for each in things if each != seen.thing]
+        given = artist.read(all_of, wanted.weights_limit)
         wish = density.read(seen.thing, wanted.density, given.groups)
     except (modifiers.Refused, density.NoSuchName) as error:
         return Failed(thing.name, str(error))

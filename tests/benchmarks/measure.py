@@ -20,6 +20,7 @@ from pathlib import Path
 import embedding
 import flowing
 import remeshing
+import topology
 from bars import Results
 from bench import Bench, Row
 from tables import tables, write
@@ -63,6 +64,8 @@ PARTS: dict[str, Callable[[Bench], list[Row]]] = {
     "flow_even": flowing.flow_even,
     "flow_bodies": flowing.flow_bodies,
     "flow_artists": flowing.flow_artists,
+    "topology": topology.topology,
+    "topology_peers": topology.topology_peers,
     "large": remeshing.large,
     "identity": remeshing.identity,
     "sizes": sizes,

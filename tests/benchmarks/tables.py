@@ -106,6 +106,9 @@ LARGE = (
     ("wall_s", "wall s", ".1f"),
     ("peak_mb", "peak MB", ".0f"),
 )
+KIND_PEERS = {"instant_meshes": "Instant Meshes", "quadriflow": "QuadriFlow"}
+KIND_COUNTS = (("inverted", 0), ("is_used", True))
+KIND_BORDERS = ("border_mean_edges", "border_largest_edges", ".2f")
 
 Columns = Sequence[tuple[str, str, str]]
 
@@ -151,6 +154,25 @@ def few_table(rows: Sequence[Row]) -> str:
     return "\n".join(lines)
 
 
+def kinds_table(rows: Sequence[Row], peers: Sequence[Row]) -> str:
+    """One line a kind of model: how many come out with the input's topology, ours and theirs."""
+    of_peers = {row["mesh"]: row for row in peers}
+    head = ["kind", "models", "done", "not one inverted quad", "flow in all of it"]
+    head += ["loops; spirals %", "border off by, edges: mean; largest", *KIND_PEERS.values()]
+    lines = [_line(head), "|" + "---|" * len(head)]
+    for kind in (*dict.fromkeys(row["kind"] for row in rows), None):
+        group = [row for row in rows if kind in (row["kind"], None)]
+        done = [row for row in group if row.get("is_alike") and not row["n_kept"]]
+        theirs = [of_peers.get(row["mesh"], {}) for row in group]
+        cells = [kind or "**all**", str(len(group)), str(len(done))]
+        cells += [str(sum(row[key] == value for row in done)) for key, value in KIND_COUNTS]
+        for pair in (("loop_edges_pct", "spiral_pct", ".0f"), KIND_BORDERS):
+            cells.append("; ".join(_cell(median(done, key), pair[2]) for key in pair[:2]))
+        cells += [str(sum(bool(row.get(f"{p}_is_alike")) for row in theirs)) for p in KIND_PEERS]
+        lines.append(_line(cells))
+    return "\n".join(lines)
+
+
 def steps_table(rows: Sequence[Row]) -> str:
     """Median CPU seconds of every step."""
     done = [row["steps_s"] for row in rows if row.get("ok") and "steps_s" in row]
@@ -188,6 +210,8 @@ def tables(results: Results) -> dict[str, str]:
     ):
         if rows := results.get(part):
             made[marker] = make(rows)
+    if rows := results.get("topology"):
+        made["topology"] = kinds_table(rows, results.get("topology_peers", []))
     return made
 
 
