@@ -10,6 +10,7 @@ from typing import Any
 
 import orbflow_native
 
+from . import words
 from .artist import Artist
 from .mesh_arrays import Float, MeshArrays
 from .modifiers import Applied
@@ -48,6 +49,8 @@ class Task:
     density: Float | None = None
     #: More objects that get its result: they share its mesh and have its scale.
     others: tuple[str, ...] = ()
+    #: How many faces it gets; none: as many as the settings say.
+    faces: int | None = None
     #: How modifiers have made the arrays of the object's own mesh.
     applied: Applied | None = None
 
@@ -111,7 +114,8 @@ def remesh(
 def _bounds(tasks: list[Todo], n_wanted: int) -> list[float]:
     """Which share of the work is done before each task, and after the last."""
     work = [
-        0 if isinstance(each, Failed) else n_wanted + len(each.arrays.loop_start) for each in tasks
+        0 if isinstance(each, Failed) else (each.faces or n_wanted) + len(each.arrays.loop_start)
+        for each in tasks
     ]
     done = list(accumulate(work, initial=0))
     return [each / max(done[-1], 1) for each in done]
@@ -124,6 +128,8 @@ def _remesh_one(
     cancel: orbflow_native.CancelToken,
 ) -> orbflow_native.Remeshed:
     arrays, artist = task.arrays, task.artist
+    if task.faces:
+        settings = settings | {"faces": task.faces}
     if task.applied and task.applied.stack.half:
         settings = settings | {"mirror": "xyz"[task.applied.stack.half.axis]}
     return orbflow_native.remesh(
@@ -194,6 +200,12 @@ class Job:
     def left_s(self) -> float | None:
         """About how many seconds are left; none where nobody can say yet."""
         return self._clock.left_s(self.stage.share)
+
+    def told(self) -> str:
+        """How far it is, in words."""
+        n = len(self.tasks)
+        which = f"{self.stage.at + 1:,} of {n:,}: " if n > 1 else ""
+        return which + words.status(self.stage.step, self.stage.share, self.left_s())
 
     def wait(self) -> None:
         """Waits until the thread has ended."""

@@ -15,9 +15,13 @@ _MARGIN_PX = 70.0
 _LETTER_PX = 6.0
 # The share of the width that a sentence has beside a button.
 _BESIDE = 0.74
+# The share that the name of a figure has beside its value.
+_OF_ROW = 0.48
 # So many objects have a line of their own; a list that is longer takes long to draw and to read.
 _MOST_LINES = 40
 _ICONS = {"refused": "CANCEL", "warned": "ERROR", "done": "CHECKMARK"}
+# Shares of the input that have a button.
+_RATIOS = (10, 25, 50)
 # What stands in an empty field.
 _PLACEHOLDERS = {"density": "Group or Color"}
 _ROWS = (
@@ -45,19 +49,22 @@ class VIEW3D_PT_orbflow(bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
         layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
-        _draw_settings(layout, context.scene.orbflow)
+        n_letters = _n_letters(context)
         if running:
-            # Under the mouse a button that is grey once stays so: Blender draws it as it was.
-            layout.label(text="At work: ESC stops it", icon="MOD_REMESH")
+            _draw_progress(layout)
         else:
             _button(layout, context)
-        n_letters = _n_letters(context)
+        wanted = context.scene.orbflow
+        _draw_size(layout, wanted, context)
         if lines := runs.lines():
             _draw_lines(layout.box().column(align=True), lines, n_letters)
         if left := runs.left_of(context.object):
             _draw_left(layout.box().column(align=True), context.object.name, left, context)
+        for title, names in settings.SECTIONS.items():
+            header, body = layout.panel(f"orbflow_{title}", default_closed=True)
+            header.label(text=title)
+            if body:
+                _draw_settings(body, wanted, names)
         column = layout.column(heading="Show")
         column.prop(context.scene.orbflow, "show_irregular")
         last = runs.last_of(context.object)
@@ -79,8 +86,40 @@ def _button(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     settings.copy(context.scene.orbflow, button)
 
 
-def _draw_settings(layout: bpy.types.UILayout, wanted: settings.Settings) -> None:
-    for name in settings.NAMES:
+def _draw_progress(layout: bpy.types.UILayout) -> None:
+    """How far the run is, where the button was, and below it what stops it."""
+    layout.progress(factor=running[-1].stage.share, text=running[-1].told())
+    layout.operator("object.orbflow_cancel", icon="CANCEL")
+
+
+def _draw_size(
+    layout: bpy.types.UILayout, wanted: settings.Settings, context: bpy.types.Context
+) -> None:
+    """How many faces there will be, and how many there are."""
+    _draw_settings(layout, wanted, settings.FIRST)
+    if wanted.size == "RATIO":
+        row = layout.row(align=True)
+        for ratio in _RATIOS:
+            button = row.operator("wm.context_set_float", text=f"{ratio} %")
+            button.data_path, button.value = "scene.orbflow.ratio", ratio
+    thing = context.object
+    if thing and thing.type == "MESH" and wanted.size != "EDGE":
+        seen = thing.evaluated_get(context.evaluated_depsgraph_get())
+        n = len((seen if wanted.use_modifiers else thing).data.polygons)
+        told = f"{words.count(n, 'face')} now"
+        if wanted.size == "RATIO":
+            told = f"{round(n * wanted.ratio / 100):,} of {words.count(n, 'face')}"
+        layout.label(text=told, icon="MESH_DATA")
+
+
+def _draw_settings(
+    layout: bpy.types.UILayout, wanted: settings.Settings, names: tuple[str, ...]
+) -> None:
+    layout.use_property_split = True
+    layout.use_property_decorate = False
+    for name in names:
+        if not settings.is_shown(wanted, name):
+            continue
         row = layout.row()
         row.active = settings.is_of_use(wanted, name)
         row.prop(wanted, name, placeholder=_PLACEHOLDERS.get(name, ""))
@@ -89,6 +128,15 @@ def _draw_settings(layout: bpy.types.UILayout, wanted: settings.Settings) -> Non
 def redraw_status_bar(context: bpy.types.Context) -> None:
     """Redraws the status bar, which is in no screen's list of areas: setting its text does it."""
     context.workspace.status_text_set_internal("")
+
+
+def redraw_progress(context: bpy.types.Context) -> None:
+    """Draws the sidebars anew, and nothing of the views beside them."""
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            for region in area.regions if area.type == "VIEW_3D" else ():
+                if region.type == "UI":
+                    region.tag_redraw()
 
 
 def redraw_sidebars(context: bpy.types.Context) -> None:
@@ -105,8 +153,8 @@ def rows(report: dict[str, Any]) -> list[tuple[str, str]]:
     if not figures["quads_pct"]:
         del figures["quads_pct"]
     score = [
-        (words, form.format(figures[name]))
-        for words, name, form in _ROWS
+        (what, form.format(figures[name]) + words.beside_artists(name, figures))
+        for what, name, form in _ROWS
         if figures.get(name) is not None
     ]
     return _symmetry(report) + score + _proposal(report["embedding"])
@@ -190,6 +238,6 @@ def _draw_score(column: bpy.types.UILayout, report: dict[str, Any], n_letters: i
     for text in words.exceptions(report):
         _draw_text(column, text, "INFO", n_letters)
     for what, value in rows(report):
-        row = column.row()
+        row = column.split(factor=_OF_ROW)
         row.label(text=what)
         row.label(text=value)

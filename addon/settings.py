@@ -14,6 +14,11 @@ from . import density, preferences
 # How many crosses of the field a result brings: enough to read the field, a tenth of a megabyte.
 N_CROSSES = 4000
 
+_SIZES = (
+    ("FACES", "Faces", "A number of faces"),
+    ("RATIO", "Ratio", "A share of the faces that the object has, modifiers included"),
+    ("EDGE", "Edge Length", "As many faces as it takes for edges of this length"),
+)
 _KINDS = (
     ("QUADS", "Quads", "Faces with four corners"),
     ("TRIANGLES", "Triangles", "Faces with three corners"),
@@ -96,6 +101,9 @@ def _push_undo(_settings: object, _context: bpy.types.Context) -> None:
 class Settings:
     """The properties themselves; names, defaults and ranges are those of the core."""
 
+    size: EnumProperty(
+        name="Size", description="How the number of faces is given", items=_SIZES, default="FACES"
+    )
     faces: IntProperty(
         name="Faces",
         description="How many faces the result has, within a few percent",
@@ -104,6 +112,24 @@ class Settings:
         max=orbflow_native.MAX_FACES,
         soft_min=100,
         soft_max=100_000,
+    )
+    ratio: FloatProperty(
+        name="Ratio",
+        description="How many faces the result has, as a share of those of the object",
+        default=25.0,
+        min=0.001,
+        max=10_000.0,
+        soft_max=100.0,
+        subtype="PERCENTAGE",
+    )
+    edge_length: FloatProperty(
+        name="Edge Length",
+        description="How long edges are in the scene, on the whole",
+        default=0.1,
+        min=1e-6,
+        soft_max=10.0,
+        subtype="DISTANCE",
+        unit="LENGTH",
     )
     kind: EnumProperty(name="Kind", description="What the faces are", items=_KINDS)
     primitive: EnumProperty(
@@ -236,12 +262,29 @@ class Settings:
 # Which settings only quads that flow heed.
 _OF_FLOW = {"follow_shape", "adaptivity", "density", "mirror"}
 NAMES = tuple(Settings.__annotations__)
+# Settings that say how many faces an object gets.
+_OF_SIZE = {"size", "ratio", "edge_length"}
 # Settings that say what of an object is read.
 _OF_MESH = {"density", "marked_edges", "mirror_modifier", "use_modifiers"}
 # Settings that say what is written.
 _OF_RESULT = {"weights_limit"}
 # Settings that are one with another in the core.
 _IN_OTHERS = {"use_weld"}
+_APART = _OF_SIZE | _OF_MESH | _OF_RESULT | _IN_OTHERS
+# What is set by each value of `size`.
+_BY_SIZE = {"FACES": "faces", "RATIO": "ratio", "EDGE": "edge_length"}
+#: The settings beside the button, and those in the sections of the panel below it.
+FIRST = ("kind", "size", "faces", "ratio", "edge_length")
+SECTIONS = {
+    "Shape": ("follow_shape", "adaptivity", "sharp_angle"),
+    "Symmetry": ("mirror", "mirror_modifier"),
+    "Guides and Density": ("marked_edges", "density"),
+    "Keep": (
+        *("borders", "fill_size", "small_parts", "small_size"),
+        *("use_modifiers", "use_weld", "weld", "weights_limit"),
+    ),
+    "Advanced": ("primitive", "predictor", "threads", "seed"),
+}
 
 
 class OrbflowSettings(bpy.types.PropertyGroup, Settings):
@@ -269,7 +312,7 @@ class OrbflowSettings(bpy.types.PropertyGroup, Settings):
 
 def for_core(source: Settings) -> dict[str, Any]:
     """The settings as keywords of `orbflow_native.remesh`; others say what is read or written."""
-    names = [name for name in NAMES if name not in _OF_MESH | _OF_RESULT | _IN_OTHERS]
+    names = [name for name in NAMES if name not in _APART]
     values = {name: _value(getattr(source, name)) for name in names}
     return values | {
         "sharp_angle": math.degrees(source.sharp_angle),
@@ -292,6 +335,11 @@ def is_of_use(source: Settings, name: str) -> bool:
     if name == "fill_size":
         return source.borders == "FILL"
     return name != "weld" or source.use_weld
+
+
+def is_shown(source: Settings, name: str) -> bool:
+    """Whether a setting has a row: of those for the number of faces the one that is used."""
+    return name not in _BY_SIZE.values() or name == _BY_SIZE[source.size]
 
 
 def copy(source: Settings, target: object) -> None:

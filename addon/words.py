@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reports and reasons of the core in an artist's words."""
 
+import math
 from typing import Any
 
 #: The steps of a run, by the core's names of them.
@@ -42,8 +43,20 @@ _OF_ONE = {
     "small": "is too small for this face count",
 }
 _OUTCOMES = {"kept": "left as they were", "dropped": "left out"}
+# What whole bodies, heads and props have that artists modelled: at least, at most.
+_OF_ARTISTS = {"loop_edges_pct": (33.0, math.inf), "spiral_pct": (0.0, 1.6)}
 # Of more texts than these the rest is counted.
 _MOST_TEXTS = 3
+
+
+def beside_artists(name: str, figures: dict[str, Any]) -> str:
+    """How a figure of a closed mesh is beside what is made by hand; empty where that is unknown."""
+    if name not in _OF_ARTISTS or not figures["closed"]:
+        return ""
+    least, most = _OF_ARTISTS[name]
+    if figures[name] < least:
+        return ", by hand more"
+    return ", by hand less" if figures[name] > most else ", as by hand"
 
 
 def status(step: str, share: float, left_s: float | None) -> str:

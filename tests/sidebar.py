@@ -20,6 +20,13 @@ class Layout:
 
     column = row = box = split = part
 
+    def panel(self, name: str, **_how: object) -> "tuple[Layout, Layout]":
+        self.drawn.append((name, self))
+        return self.part(), self.part()
+
+    def progress(self, factor: float, text: str) -> None:
+        self.drawn.append((f"{text} {factor:.2f}", self))
+
     def prop(self, _of: object, name: str, **_how: object) -> None:
         self.drawn.append((name, self))
 
@@ -45,6 +52,7 @@ def panel_of(thing: bpy.types.Object, width: int = 292) -> Layout:
     context: Any = SimpleNamespace(
         scene=bpy.context.scene,
         object=thing,
+        evaluated_depsgraph_get=bpy.context.evaluated_depsgraph_get,
         region=SimpleNamespace(width=width),
         preferences=preferences,
     )

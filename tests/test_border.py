@@ -59,7 +59,10 @@ def test_the_binding_has_the_defaults_of_the_core() -> None:
 
 def test_panel_and_operator_have_the_same_settings(operator: Any, scene_settings: Any) -> None:  # noqa: ANN401
     for name in (
+        "size",
         "faces",
+        "ratio",
+        "edge_length",
         "kind",
         "primitive",
         "follow_shape",

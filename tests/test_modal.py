@@ -12,6 +12,7 @@ import bpy
 import numpy as np
 import pytest
 from conftest import ROOT
+from sidebar import drawn
 from test_operator import Open, addon, arrays
 
 
@@ -37,11 +38,13 @@ class Window:
         self.handlers: list[object] = []
         self.reports: list[str] = []
         self.redraws: list[str] = []
+        self.drawn: list[str] = []
         self.were_at_work: list[bool] = []
         self.warps: list[tuple[int, int]] = []
 
     def context(self) -> SimpleNamespace:
-        view = SimpleNamespace(type="VIEW_3D", tag_redraw=self._draw_sidebar)
+        sidebar = SimpleNamespace(type="UI", tag_redraw=lambda: self.drawn.append("sidebar"))
+        view = SimpleNamespace(type="VIEW_3D", tag_redraw=self._draw_sidebar, regions=[sidebar])
         other = SimpleNamespace(type="OUTLINER")
         screen = SimpleNamespace(areas=[other, view])
         shown = SimpleNamespace(
@@ -203,6 +206,25 @@ def test_a_mouse_that_rests_on_the_button_is_moved_to_where_it_is(
     assert window.warps == warps
 
 
+def test_the_panel_shows_how_far_it_is_and_a_button_that_stops_it(window: Window) -> None:
+    context, spot = window.context(), bpy.context.object
+    self = operator(window, faces=200_000)
+    before = arrays(spot)
+    assert not bpy.ops.object.orbflow_cancel.poll()
+    self.invoke(context, None)
+    job = addon("job").running[-1]
+    send(self, context, "TIMER")
+    assert window.drawn
+    shown = [text for text, _ in drawn(spot)]
+    assert shown[0].startswith(job.told()[:4])
+    assert shown[1] == "CANCEL object.orbflow_cancel"
+    assert "MOD_REMESH object.orbflow_remesh" not in shown
+    assert bpy.ops.object.orbflow_cancel() == {"FINISHED"}
+    job.wait()
+    assert send(self, context, "TIMER") == {"CANCELLED"}
+    assert arrays(spot) == before
+
+
 def test_escape_counts_even_when_the_work_is_already_done(window: Window) -> None:
     spot = bpy.data.objects["Spot"]
     before = arrays(spot)
@@ -287,7 +309,7 @@ def test_the_status_bar_shows_the_step_the_share_and_how_to_stop(window: Window)
     job.tasks = job.tasks * 12
     job.stage = addon("job").Stage(0.5, "score", 2)
     assert shown_in_status_bar(window)[0] == (
-        "Orbflow 3 of 12: measuring, 50 %, about 12 s left 0.50"
+        "Orbflow: 3 of 12: measuring, 50 %, about 12 s left 0.50"
     )
     self.cancel(context)
 

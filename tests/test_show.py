@@ -51,10 +51,10 @@ def refuse(monkeypatch: pytest.MonkeyPatch) -> Callable[..., str]:
 
 
 def rows(thing: Any) -> list[str]:  # noqa: ANN401
-    """What the panel says between the button and the boxes to tick."""
+    """What the panel says between the number of faces and the sections of settings."""
     texts = [text for text, _ in panel_of(thing, width=1200).drawn]
-    start = texts.index("MOD_REMESH object.orbflow_remesh") + 1
-    return texts[start : texts.index("show_irregular")]
+    said = texts[texts.index("faces") + 1 : texts.index("orbflow_Shape")]
+    return [text for text in said if not text.startswith("MESH_DATA")]
 
 
 def selected(thing: Any) -> tuple[set[tuple[int, ...]], set[int], set[int]]:  # noqa: ANN401

@@ -212,6 +212,39 @@ def test_settings_that_change_nothing_are_grey(open_fixture: Open) -> None:
     assert grey() == {"weld", "mirror_modifier"}
 
 
+def test_every_setting_has_one_place_in_the_panel(open_fixture: Open) -> None:
+    first = open_fixture("03")
+    settings, wanted = addon("settings"), bpy.context.scene.orbflow
+    places = [*settings.FIRST, *(name for names in settings.SECTIONS.values() for name in names)]
+    assert sorted(places) == sorted(settings.NAMES)
+    for size, shown in (("FACES", "faces"), ("RATIO", "ratio"), ("EDGE", "edge_length")):
+        wanted.size = size
+        names = {text for text, _ in panel_of(first).drawn}
+        assert names & {"faces", "ratio", "edge_length"} == {shown}
+        assert set(settings.NAMES) - names == {"faces", "ratio", "edge_length"} - {shown}
+
+
+def test_figures_stand_beside_those_made_by_hand(open_fixture: Open) -> None:
+    open_fixture("03")
+    press.orbflow_remesh(faces=200)
+    report = addon("runs").last_report("First")
+
+    def shown(**figures: object) -> tuple[str, str]:
+        report["score"] |= figures
+        rows = dict(addon("panel").rows(report))
+        return rows["On closed loops"], rows["In spirals"]
+
+    assert shown(loop_edges_pct=38.0, spiral_pct=4.2) == (
+        "38 %, as by hand",
+        "4 %, by hand less",
+    )
+    assert shown(loop_edges_pct=12.0, spiral_pct=0.0) == (
+        "12 %, by hand more",
+        "0 %, as by hand",
+    )
+    assert shown(closed=False) == ("12 %", "0 %")
+
+
 def test_the_redo_panel_gives_the_sidebar_its_settings_and_keeps_the_ticks(
     open_fixture: Open,
 ) -> None:

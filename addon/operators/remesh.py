@@ -19,6 +19,7 @@ from .. import (
     panel,
     runs,
     settings,
+    size,
     words,
 )
 from ..job import Done, Failed, Job, Outcome, Task, Todo, remesh, running
@@ -81,6 +82,7 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
             job.cancel()
         if event.type == "TIMER":
             panel.redraw_status_bar(context)
+            panel.redraw_progress(context)
             if job.has_ended():
                 self._tidy(context)
                 events.wake_button(event, context.window)
@@ -222,7 +224,8 @@ def _task(
     arrays = mesh_arrays.read(seen.thing.data, wanted.marked_edges)
     scale = tuple(thing.matrix_world.to_scale())
     names = tuple(each.name for each in others)
-    return Task(thing.name, arrays, scale, given, wish, names, seen.applied)
+    n_faces = size.n_faces(wanted, arrays, scale)
+    return Task(thing.name, arrays, scale, given, wish, names, n_faces, seen.applied)
 
 
 def _replace(outcome: Done) -> dict[str, Any] | Failed:
@@ -277,10 +280,7 @@ def _draw_status(bar: bpy.types.Header, _context: bpy.types.Context) -> None:
     if not running:
         return
     job = running[-1]
-    stage, n = job.stage, len(job.tasks)
-    which = f" {stage.at + 1:,} of {n:,}" if n > 1 else ""
     row = bar.layout.row()
     row.ui_units_x = 20  # Blender cuts the text at the width of a short word otherwise
-    told = words.status(stage.step, stage.share, job.left_s())
-    row.progress(factor=stage.share, text=f"Orbflow{which}: {told}")
+    row.progress(factor=job.stage.share, text=f"Orbflow: {job.told()}")
     bar.layout.label(text="Stop", icon="EVENT_ESC")
