@@ -9,13 +9,14 @@ is said of a run.
 import bpy
 
 from . import overlay, panel, preferences, runs, settings
-from .operators import cancel, remesh, show
+from .operators import cancel, paint, remesh, show
 
 _CLASSES = (
     preferences.OrbflowPreferences,
     settings.OrbflowSettings,
     remesh.OBJECT_OT_orbflow_remesh,
     cancel.OBJECT_OT_orbflow_cancel,
+    paint.OBJECT_OT_orbflow_paint_density,
     show.OBJECT_OT_orbflow_show,
     panel.VIEW3D_PT_orbflow,
 )

@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 from . import attributes
 from .artist.groups import Group
 
+#: The vertex group that is painted where none is named.
+DEFAULT = "Density"
 # How bright a colour is, as Blender itself turns colours into numbers.
 _BRIGHTNESS = np.array((0.2126, 0.7152, 0.0722), np.float32)
 

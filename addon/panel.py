@@ -65,6 +65,8 @@ class VIEW3D_PT_orbflow(bpy.types.Panel):
             header.label(text=title)
             if body:
                 _draw_settings(body, wanted, names)
+                if "density" in names:
+                    body.operator("object.orbflow_paint_density", icon="BRUSH_DATA")
         column = layout.column(heading="Show")
         column.prop(context.scene.orbflow, "show_irregular")
         last = runs.last_of(context.object)
@@ -76,13 +78,15 @@ class VIEW3D_PT_orbflow(bpy.types.Panel):
 
 
 def draw_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
-    """The entry in the Object menu; operators in no menu are not found by searching."""
+    """The entry in the Object menu: what is searched for are the words of menus."""
     menu.layout.separator()
-    _button(menu.layout, context)
+    _button(menu.layout, context, "Orbflow Remesh (Quad Retopology)")
 
 
-def _button(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    button = layout.operator("object.orbflow_remesh", icon="MOD_REMESH")
+def _button(
+    layout: bpy.types.UILayout, context: bpy.types.Context, text: str = "Orbflow Remesh"
+) -> None:
+    button = layout.operator("object.orbflow_remesh", text=text, icon="MOD_REMESH")
     settings.copy(context.scene.orbflow, button)
 
 

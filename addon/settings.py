@@ -229,6 +229,14 @@ class Settings:
         step=0.01,
         subtype="PERCENTAGE",
     )
+    keep_original: BoolProperty(
+        name="Original",
+        description=(
+            "Leave a hidden copy of the object as it was beside the result, which keeps the name "
+            "and all that points at it"
+        ),
+        default=False,
+    )
     weights_limit: IntProperty(
         name="Weights per Vertex",
         description=(
@@ -267,7 +275,7 @@ _OF_SIZE = {"size", "ratio", "edge_length"}
 # Settings that say what of an object is read.
 _OF_MESH = {"density", "marked_edges", "mirror_modifier", "use_modifiers"}
 # Settings that say what is written.
-_OF_RESULT = {"weights_limit"}
+_OF_RESULT = {"keep_original", "weights_limit"}
 # Settings that are one with another in the core.
 _IN_OTHERS = {"use_weld"}
 _APART = _OF_SIZE | _OF_MESH | _OF_RESULT | _IN_OTHERS
@@ -281,7 +289,7 @@ SECTIONS = {
     "Guides and Density": ("marked_edges", "density"),
     "Keep": (
         *("borders", "fill_size", "small_parts", "small_size"),
-        *("use_modifiers", "use_weld", "weld", "weights_limit"),
+        *("use_modifiers", "use_weld", "weld", "keep_original", "weights_limit"),
     ),
     "Advanced": ("primitive", "predictor", "threads", "seed"),
 }
@@ -340,6 +348,15 @@ def is_of_use(source: Settings, name: str) -> bool:
 def is_shown(source: Settings, name: str) -> bool:
     """Whether a setting has a row: of those for the number of faces the one that is used."""
     return name not in _BY_SIZE.values() or name == _BY_SIZE[source.size]
+
+
+def set_density(target: "OrbflowSettings", name: str) -> None:
+    """Names the density within the undo step of an operator."""
+    _copying.append(True)
+    try:
+        target.density = name
+    finally:
+        _copying.clear()
 
 
 def copy(source: Settings, target: object) -> None:

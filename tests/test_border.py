@@ -79,6 +79,7 @@ def test_panel_and_operator_have_the_same_settings(operator: Any, scene_settings
         "fill_size",
         "use_weld",
         "weld",
+        "keep_original",
         "weights_limit",
         "predictor",
         "threads",

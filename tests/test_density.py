@@ -131,3 +131,24 @@ def test_an_object_without_the_name_does_not_stop_the_others(open_fixture: Open)
     assert press.orbflow_remesh(faces=200, density="Dense") == {"FINISHED"}
     assert len(left.data.polygons) <= 204
     assert len(right.data.polygons) == n_faces
+
+
+def test_the_button_has_an_artist_paint_the_density(open_fixture: Open) -> None:
+    first = open_fixture("03")
+    wanted = bpy.context.scene.orbflow
+    assert bpy.ops.object.orbflow_paint_density() == {"FINISHED"}
+    assert bpy.context.mode == "PAINT_WEIGHT"
+    assert (wanted.density, first.vertex_groups.active.name) == ("Density", "Density")
+    weights = {each.weight for vertex in first.data.vertices for each in vertex.groups}
+    assert weights == {0.5}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    first.vertex_groups["Density"].add([0], 1.0, "REPLACE")
+    assert bpy.ops.object.orbflow_paint_density() == {"FINISHED"}
+    assert first.data.vertices[0].groups[0].weight == 1.0
+    bpy.ops.object.mode_set(mode="OBJECT")
+    paint(first, "FLOAT_COLOR")
+    wanted.density = "Dense"
+    assert bpy.ops.object.orbflow_paint_density() == {"FINISHED"}
+    assert bpy.context.mode == "PAINT_VERTEX"
+    assert first.data.color_attributes.active_color.name == "Dense"
+    bpy.ops.object.mode_set(mode="OBJECT")

@@ -218,7 +218,7 @@ def test_the_panel_shows_how_far_it_is_and_a_button_that_stops_it(window: Window
     shown = [text for text, _ in drawn(spot)]
     assert shown[0].startswith(job.told()[:4])
     assert shown[1] == "CANCEL object.orbflow_cancel"
-    assert "MOD_REMESH object.orbflow_remesh" not in shown
+    assert "MOD_REMESH Orbflow Remesh" not in shown
     assert bpy.ops.object.orbflow_cancel() == {"FINISHED"}
     job.wait()
     assert send(self, context, "TIMER") == {"CANCELLED"}

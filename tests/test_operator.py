@@ -131,6 +131,24 @@ def test_the_object_keeps_what_is_the_artists(open_fixture: Open) -> None:
     assert len(bpy.data.meshes) == 1
 
 
+def test_the_original_stays_hidden_beside_the_result(open_fixture: Open) -> None:
+    first = open_fixture("03")
+    follower = bpy.data.objects.new("Follower", None)
+    bpy.context.collection.objects.link(follower)
+    follower.parent = first
+    mesh, before = first.data, arrays(first)
+    press.orbflow_remesh(faces=200, keep_original=True)
+    original = bpy.data.objects["First Original"]
+    assert original.data == mesh
+    assert arrays(original) == before
+    assert original.hide_get()
+    assert original.hide_render
+    assert not original.select_get()
+    assert first.data != mesh
+    assert follower.parent == first
+    assert first.visible_get()
+
+
 def test_shading_is_kept_flat_or_smooth(open_fixture: Open) -> None:
     artist = open_fixture("09")
     press.orbflow_remesh(faces=200)
@@ -270,7 +288,7 @@ def test_a_fallback_is_named_in_the_panel_and_the_info_line(open_fixture: Open) 
         def label(self, text: str, icon: str = "NONE") -> None:
             shown.append(f"{icon} {text}")
 
-        def row(self) -> "Column":
+        def split(self, **_how: object) -> "Column":
             return self
 
     panel._draw_score(Column(), report, 36)

@@ -14,6 +14,7 @@ from .. import (
     events,
     mesh_arrays,
     modifiers,
+    originals,
     outcomes,
     overlay,
     panel,
@@ -113,7 +114,7 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
 
     def _finish(self, ended: list[Outcome]) -> set[str]:
         """Writes the results; the one place where errors become reports."""
-        told = [_write(each) for each in ended]
+        told = [_write(each, self.keep_original) for each in ended]
         lines = [line for each in told for line in each.lines]
         runs.remember_lines(lines if len(told) > 1 else [])
         is_done = any(each.state != "refused" for each in told)
@@ -122,12 +123,12 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
         return {"FINISHED"} if is_done else {"CANCELLED"}
 
 
-def _write(outcome: Outcome) -> Told:
+def _write(outcome: Outcome, keep_original: bool) -> Told:
     """Replaces an object's mesh, where there is a result, and tells what became of it."""
     if isinstance(outcome, Failed):
         return outcomes.refused(outcome)
     old = outcomes.before(outcome)
-    told = _replace(outcome)
+    told = _replace(outcome, keep_original)
     if isinstance(told, Failed):
         return outcomes.refused(told)
     return outcomes.done(outcome, told, old)
@@ -228,7 +229,7 @@ def _task(
     return Task(thing.name, arrays, scale, given, wish, names, n_faces, seen.applied)
 
 
-def _replace(outcome: Done) -> dict[str, Any] | Failed:
+def _replace(outcome: Done, keep_original: bool) -> dict[str, Any] | Failed:
     """Gives an object, and those that share its mesh, its new one; returns what is told of it."""
     task, given, applied = outcome.task, outcome.task.artist, outcome.task.applied
     # A linked object may have the same name.
@@ -239,6 +240,8 @@ def _replace(outcome: Done) -> dict[str, Any] | Failed:
         result = modifiers.rest_of(outcome.result, applied)
     except modifiers.Refused as error:
         return Failed(task.name, str(error))
+    for each in things if keep_original else ():
+        originals.keep(each)
     thing, *others = things
     old, name = thing.data, thing.data.name
     thing.data = mesh_arrays.write(result, like=old)
