@@ -20,8 +20,9 @@ class OBJECT_OT_orbflow_paint_density(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         """Whether there is a mesh to paint on."""
         thing = context.object
-        is_open = thing is not None and thing.type == "MESH" and context.mode == "OBJECT"
-        return is_open and thing.is_editable and thing.data.library is None
+        if thing is None or thing.type != "MESH" or context.mode != "OBJECT":
+            return False
+        return thing.is_editable and thing.data.library is None
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Makes the vertex group of the field *Density*, unless it is there, and paints on it."""
