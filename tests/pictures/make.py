@@ -35,7 +35,7 @@ class Studio:
 
     def remesh(self, name: str, n_faces: int, *arguments: str) -> tuple[Path, Path, dict]:
         """The new mesh, the sphere it came from, and the report."""
-        stem = "_".join([name, str(n_faces), *(a.strip("-") for a in arguments)])
+        stem = "_".join([Path(name).name, str(n_faces), *(a.strip("-") for a in arguments)])
         mesh, sphere = self.folder / f"{stem}.obj", self.folder / f"{stem}_sphere.obj"
         report = self._run(
             "remesh", self.input(name), mesh, "--faces", n_faces, *arguments, "--sphere", sphere
@@ -60,7 +60,7 @@ class Studio:
         command = [sys.executable, script, self.input(name), "--targets", n_faces]
         command += ["--peers", peer, "--out", self.folder, "--blender", sys.executable]
         subprocess.run([str(part) for part in command], check=True, capture_output=True)
-        mesh = self.folder / f"{name}.{peer}.{n_faces}.obj"
+        mesh = self.folder / f"{Path(name).name}.{peer}.{n_faces}.obj"
         return mesh if mesh.exists() else None
 
     def _run(self, verb: str, *arguments: str | Path | int) -> dict:
@@ -113,7 +113,8 @@ def gallery(studio: Studio, names: tuple[str, ...]) -> list[list[Exhibit]]:
     rows = []
     for name in names:
         ours, _, report = studio.remesh(name, N_QUADS)
-        row = [Exhibit(studio.input(name), f"{name}, {_n_faces(studio.input(name)):,}", edges=FINE)]
+        source = studio.input(name)
+        row = [Exhibit(source, f"{source.stem}, {_n_faces(source):,}", edges=FINE)]
         row.append(Exhibit(ours, f"Orbflow, {report['output']['n_faces']:,}", has_marks=True))
         for peer, title in PEERS.items():
             mesh = studio.peer(name, peer, N_QUADS)
@@ -129,6 +130,10 @@ GALLERIES = {
     "gallery_animals": ("spot", "cat", "koala", "fish", "penguin"),
     "gallery_thin": ("scorpion", "goathead", "nefertiti", "boat", "plane"),
     "gallery_hard": ("hammer", "sword", "wingnut", "cad_shaft", "cad_cube_bump"),
+    "gallery_open": (
+        *("open_demosthenes", "../makehuman/clothes/male_casualsuit03", "open_plane_holes"),
+        *("cad_gear", "genus2_skull"),
+    ),
 }
 PICTURES: dict[str, Callable[[Studio], list[list[Exhibit]]]] = {
     "overview": overview,
