@@ -40,11 +40,7 @@ impl Region {
 
 impl Search<'_> {
     /// Vertices of which every other one is no farther than `spacing` from the nearest.
-    pub fn net(
-        &mut self,
-        spacing: f64,
-        progress: &Progress,
-    ) -> Result<Vec<VertexId>, Cancelled> {
+    pub fn net(&mut self, spacing: f64, progress: &Progress) -> Result<Vec<VertexId>, Cancelled> {
         let spacing = self.inside(spacing);
         let mut roots = Vec::new();
         for v in self.mesh.vertex_ids() {
@@ -85,11 +81,7 @@ impl Search<'_> {
 
     /// The edges of a region that are in neither tree; what is beyond it is one face, or as many as the
     /// region has sides.
-    fn left_out_near(
-        &self,
-        limit: f64,
-        (region, is_one): (&Region, bool),
-    ) -> Vec<HalfedgeId> {
+    fn left_out_near(&self, limit: f64, (region, is_one): (&Region, bool)) -> Vec<HalfedgeId> {
         let mesh = self.mesh;
         let n = region.faces.len();
         let mut borders: Vec<u32> = Vec::new();
@@ -108,10 +100,11 @@ impl Search<'_> {
                     None => {
                         let border = self.border[mesh.origin(h)];
                         let at = borders.iter().position(|&b| b == border);
-                        n + 1 + at.unwrap_or_else(|| {
-                            borders.push(border);
-                            borders.len() - 1
-                        })
+                        n + 1
+                            + at.unwrap_or_else(|| {
+                                borders.push(border);
+                                borders.len() - 1
+                            })
                     }
                 };
                 match self.role(h, limit) {

@@ -53,11 +53,7 @@ struct Candidate {
 ///
 /// # Errors
 /// What [`close::fill`] says.
-pub fn seal(
-    mesh: &TriangleMesh,
-    size: f64,
-    progress: &Progress,
-) -> Result<Sealed, close::Error> {
+pub fn seal(mesh: &TriangleMesh, size: f64, progress: &Progress) -> Result<Sealed, close::Error> {
     let mut pieces = Pieces::whole(mesh);
     let mut is_side = vec![false; mesh.n_vertices()];
     let genus = topology_of_triangles(mesh).genus.unwrap_or(0).max(0);
@@ -91,7 +87,11 @@ pub fn seal(
         near = Some(roots);
     }
     let mesh = &pieces.mesh;
-    let filled = close::fill(mesh, |border| is_side[mesh.origin(border[0]).index()], progress)?;
+    let filled = close::fill(
+        mesh,
+        |border| is_side[mesh.origin(border[0]).index()],
+        progress,
+    )?;
     Ok(Sealed {
         mesh: filled.mesh,
         sides: pieces.sides,
@@ -164,7 +164,9 @@ fn apart(
     let (piece, n_pieces) = cut.mesh.face_components();
     let side = |v: VertexId| {
         let mut around = cut.mesh.outgoing(v);
-        around.next().map_or(0, |h| piece[h.face().index()] as usize)
+        around
+            .next()
+            .map_or(0, |h| piece[h.face().index()] as usize)
     };
     let mut groups = Groups::new(n_pieces);
     let mut chosen = Vec::new();

@@ -38,8 +38,8 @@ use crate::deform::Target;
 use crate::measure::{FeatureLine, Polyline, Topology};
 use crate::mesh::{FaceMap, HalfedgeMap, TriangleMesh, VertexId, VertexMap};
 pub use closing::{Closing, Small};
-pub use whole::Whole;
 use puncture::Puncture;
+pub use whole::Whole;
 
 /// Places nearer to each other than this share of the diagonal are one.
 const SAME: f64 = 1e-5;
