@@ -44,6 +44,10 @@ _BORDERS = (
     ("KEEP", "Keep", "Open edges stay open: lines of edges of the result lie on them"),
     ("FILL", "Fill", "Holes are closed, all of them or the small ones"),
 )
+_HANDLES = (
+    ("KEEP", "Keep", "Handles, as of a cup, stay, and so do holes that go through"),
+    ("SEAL", "Seal", "Small ones, as noise in scans has them, are cut and closed"),
+)
 _MIRRORS = (
     ("OFF", "Off", "The two sides of a mesh need not be alike"),
     ("AUTO", "Automatic", "Across the first axis, if any, in which every vertex has its image"),
@@ -214,6 +218,23 @@ class Settings:
         soft_max=100.0,
         subtype="PERCENTAGE",
     )
+    handles: EnumProperty(
+        name="Handles",
+        description="What becomes of handles, as of a cup, and of holes that go through",
+        items=_HANDLES,
+    )
+    seal_size: FloatProperty(
+        name="Seal Up To",
+        description=(
+            "Handles stay round which a tight loop is longer than this share of the whole mesh's "
+            "size"
+        ),
+        default=1.0,
+        min=0.0,
+        max=1000.0,
+        soft_max=100.0,
+        subtype="PERCENTAGE",
+    )
     use_weld: BoolProperty(
         name="Weld Seams",
         description="Close gaps between open edges that lie on each other, as imported seams do",
@@ -342,6 +363,8 @@ def is_of_use(source: Settings, name: str) -> bool:
         return source.use_modifiers
     if name == "fill_size":
         return source.borders == "FILL"
+    if name == "seal_size":
+        return source.handles == "SEAL"
     return name != "weld" or source.use_weld
 
 

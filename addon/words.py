@@ -178,7 +178,8 @@ def exceptions(report: dict[str, Any]) -> list[str]:
     """In words what else is otherwise than was asked for."""
     lost = ", ".join(sorted(set(report["lost"])))
     told = [_without_marks(report), f"not carried over: {lost}" if lost else ""]
-    told += [_cleaned(report), _welded(report), _parted(report), _filled(report), _shown(report)]
+    told += [_cleaned(report), _welded(report), _parted(report), _filled(report)]
+    told += [_sealed(report), _shown(report)]
     told += _modifiers(report)
     return [each for each in told if each]
 
@@ -214,6 +215,13 @@ def _filled(report: dict[str, Any]) -> str:
     opened = [part["opened"] for part in report["parts"] if part["opened"]]
     n = sum(each["n_filled"] for each in opened)
     return f"{count(n, 'border')} filled" if n else ""
+
+
+def _sealed(report: dict[str, Any]) -> str:
+    """How many handles were sealed."""
+    opened = [part["opened"] for part in report["parts"] if part["opened"]]
+    n = sum(each["n_sealed"] for each in opened)
+    return f"{count(n, 'handle')} sealed" if n else ""
 
 
 def _modifiers(report: dict[str, Any]) -> list[str]:

@@ -77,6 +77,8 @@ def test_panel_and_operator_have_the_same_settings(operator: Any, scene_settings
         "small_size",
         "borders",
         "fill_size",
+        "handles",
+        "seal_size",
         "use_weld",
         "weld",
         "keep_original",
@@ -102,6 +104,8 @@ def test_the_add_on_has_the_defaults_and_ranges_of_the_core(operator: Any) -> No
     assert operator["small_parts"].default.lower() == given["small_parts"]
     assert operator["borders"].default.lower() == given["borders"]
     assert (operator["fill_size"].default, given["fill_size"]) == (0.0, None)
+    assert operator["handles"].default.lower() == given["handles"]
+    assert operator["seal_size"].default == given["seal_size"]
     assert operator["predictor"].default.lower() == given["predictor"]
     assert (operator["primitive"].default, given["primitive"]) == ("AUTO", None)
 
@@ -121,7 +125,7 @@ def test_the_add_on_offers_the_mirrors_of_the_core(operator: Any) -> None:  # no
 
 
 @pytest.mark.parametrize(
-    ("name", "unit"), [("small_size", 1.0), ("fill_size", 1.0), ("weld", 100.0)]
+    ("name", "unit"), [("small_size", 1.0), ("fill_size", 1.0), ("seal_size", 1.0), ("weld", 100.0)]
 )
 def test_the_core_takes_the_largest_that_the_add_on_offers(
     operator: Any,  # noqa: ANN401
@@ -130,12 +134,13 @@ def test_the_core_takes_the_largest_that_the_add_on_offers(
 ) -> None:
     most = operator[name].hard_max / unit
     wanted: dict[str, Any] = {"faces": 24, "score_samples": 0, "borders": "fill"}
+    wanted["handles"] = "seal"
     orbflow_native.remesh(*ball(), **wanted | {name: most * (1 - 1e-6)})
     with pytest.raises(orbflow_native.InputError):
         orbflow_native.remesh(*ball(), **wanted | {name: most * 1.01})
 
 
-@pytest.mark.parametrize("name", ["kind", "primitive", "predictor", "small_parts", "borders"])
+@pytest.mark.parametrize("name", ["kind", "primitive", "predictor", "small_parts", "borders", "handles"])
 def test_the_add_on_offers_what_the_core_takes(operator: Any, name: str) -> None:  # noqa: ANN401
     offered = {item.identifier.lower().replace("_", "-") for item in operator[name].enum_items}
     # Kind and primitive have no word for it: nothing stands for it there.

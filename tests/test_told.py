@@ -202,7 +202,7 @@ def test_settings_that_change_nothing_are_grey(open_fixture: Open) -> None:
         drawn = panel_of(first).drawn
         return {name for name, row in drawn if not row.active} - {"show_crosses"}
 
-    assert grey() == {"fill_size"}
+    assert grey() == {"fill_size", "seal_size"}
     settings.borders = "FILL"
     assert grey() == set()
     settings.kind = "TRIANGLES"

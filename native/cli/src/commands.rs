@@ -279,6 +279,7 @@ fn tell(place: &Place, report: &clean::Report) {
 fn tell_all(place: &Place, report: &pipeline::Report) {
     tell(place, &report.clean);
     parts::tell_filled(place, &report.parts);
+    parts::tell_sealed(place, &report.parts);
     parts::tell(place, &report.kept);
     for warning in &report.warnings {
         eprintln!("{place}: warning: {}", warning.text);

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use clap::builder::{PossibleValuesParser, TypedValueParser, ValueParser};
 use orbflow_geometry::mesh::io::Format;
 use orbflow_geometry::pipeline::{
-    Borders, Kind, MAX_FACES, MAX_FILL, MAX_WELD, MIN_FACES, Mirror, Primitive, SmallParts,
+    Borders, Handles, Kind, MAX_FACES, MAX_FILL, MAX_WELD, MIN_FACES, Mirror, Primitive, SmallParts,
 };
 
 use crate::parts::Weld;
@@ -73,6 +73,15 @@ pub fn borders(text: &str) -> Result<Borders, String> {
         None if text == "fill" => Ok(Borders::Fill),
         Some(("fill", size)) => up_to(size, MAX_FILL).map(Borders::FillUpTo),
         _ => Err("it is keep, fill, or fill:SIZE".to_owned()),
+    }
+}
+
+/// Reads what becomes of handles.
+pub fn handles(text: &str) -> Result<Handles, String> {
+    match text.split_once(':') {
+        None if text == "keep" => Ok(Handles::Keep),
+        Some(("seal", size)) => up_to(size, MAX_FILL).map(Handles::SealUpTo),
+        _ => Err("it is keep or seal:SIZE".to_owned()),
     }
 }
 

@@ -2,10 +2,10 @@
 
 use clap::Args;
 use orbflow_geometry::pipeline::{
-    Borders, Flaw, Kept, Outcome, PartReport, Reason, Settings, SmallParts,
+    Borders, Flaw, Handles, Kept, Outcome, PartReport, Reason, Settings, SmallParts,
 };
 
-use crate::parsers::{borders, percent, small_parts, weld};
+use crate::parsers::{borders, handles, percent, small_parts, weld};
 use crate::place::Place;
 
 /// The most lines about single parts.
@@ -25,6 +25,10 @@ pub struct OfParts {
     /// or those no longer than so many percent of the mesh's diagonal, 1000 at most
     #[arg(long, value_name = "keep|fill|fill:SIZE", default_value = "keep", value_parser = borders)]
     pub borders: Borders,
+    /// What becomes of handles: they stay, or those are closed for good round which a tight loop is no
+    /// longer than SIZE % of the mesh's diagonal, from 0 to 1000, as of noise in scans
+    #[arg(long, value_name = "keep|seal:SIZE", default_value = "keep", value_parser = handles)]
+    pub handles: Handles,
     /// Weld borders that lie on each other up to a gap of this share of the mesh's diagonal, 0.01 at
     /// most; off: weld equal points alone
     #[arg(long, value_name = "D|off", default_value = "1e-5", value_parser = weld)]
@@ -46,6 +50,7 @@ impl OfParts {
             small_parts: self.small_parts,
             small_size: self.small_size,
             borders: self.borders,
+            handles: self.handles,
             weld: self.weld.0,
             strict: self.strict,
             ..settings.clone()
@@ -66,6 +71,15 @@ pub fn tell_filled(place: &Place, parts: &[PartReport]) {
     let n_filled = opened.map(|opened| opened.n_filled).sum();
     if n_filled > 0 {
         eprintln!("{place}: {} filled", count(n_filled, "border"));
+    }
+}
+
+/// Says on standard error how many handles were sealed, if any.
+pub fn tell_sealed(place: &Place, parts: &[PartReport]) {
+    let opened = parts.iter().filter_map(|part| part.opened);
+    let n_sealed = opened.map(|opened| opened.n_sealed).sum();
+    if n_sealed > 0 {
+        eprintln!("{place}: {} sealed", count(n_sealed, "handle"));
     }
 }
 

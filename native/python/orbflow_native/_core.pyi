@@ -199,6 +199,8 @@ def remesh(
     small_size: float = 0.0,
     borders: str = "keep",
     fill_size: float | None = None,
+    handles: str = "keep",
+    seal_size: float = 1.0,
     weld: float | None = 1e-5,
     strict: bool = False,
     predictor: str = "auto",

@@ -59,6 +59,8 @@ def remesh(
     small_size: float = 0.0,
     borders: str = "keep",
     fill_size: float | None = None,
+    handles: str = "keep",
+    seal_size: float = 1.0,
     weld: float | None = 1e-5,
     strict: bool = False,
     predictor: str = "auto",
@@ -96,7 +98,9 @@ def remesh(
     go: `small_parts` is "keep" or "drop". Borders that lie on each other are welded up to a gap of
     `weld` times the diagonal; `None` welds equal points alone. The others stay, as lines of edges
     of the result, or are filled: `borders` is "keep" or "fill"; with `fill_size`, from 0 to 1000,
-    those alone are filled that are no longer than so many percent of the diagonal.
+    those alone are filled that are no longer than so many percent of the diagonal. Handles stay,
+    or are sealed: `handles` is "keep" or "seal", and those are closed for good round which a tight
+    loop is no longer than `seal_size`, from 0 to 1000, percent of the diagonal.
     Edges of the result that lie on `carried_edges` (E, 2) are told, so that what is marked on
     these can be carried over. `cut_edges` are edges (E, 2) along which data on corners is cut as
     texture coordinates are along seams, a list with a set of them for each way in which data is
@@ -132,6 +136,8 @@ def remesh(
         small_size=small_size,
         borders=borders,
         fill_size=fill_size,
+        handles=handles,
+        seal_size=seal_size,
         weld=weld,
         strict=strict,
         predictor=predictor,

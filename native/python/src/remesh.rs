@@ -3,7 +3,7 @@
 use glam::DVec3;
 use numpy::{PyArray1, PyArray2, PyArray3};
 use orbflow_geometry::mesh::VertexId;
-use orbflow_geometry::pipeline::{self, Borders, Input, Settings, Style};
+use orbflow_geometry::pipeline::{self, Borders, Handles, Input, Settings, Style};
 use orbflow_geometry::score;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -62,7 +62,9 @@ pub struct Remeshed {
 /// faces, or smaller than `small_size` percent of the diagonal, stay or go: `small_parts` is "keep" or
 /// "drop". Borders that lie on each other are welded up to a gap of `weld` times the diagonal; `None`
 /// welds equal points alone. The others stay or are filled: `borders` is "keep" or "fill"; with
-/// `fill_size` those alone are that are no longer than so many percent of the diagonal.
+/// `fill_size` those alone are that are no longer than so many percent of the diagonal. `handles` is
+/// "keep" or "seal": those are closed for good round which a tight loop is no longer than `seal_size`
+/// percent of the diagonal.
 /// `predictor` is "auto", "network" or "solver": auto takes the network for maps of 20,000 vertices or
 /// more, else the solver. The network has the wheel's weights, or `weights`: the bytes of a file that
 /// `orbflow train` wrote, or its path. `n_crosses` is how many crosses of the field to tell at most.
@@ -75,8 +77,8 @@ pub struct Remeshed {
 #[pyo3(signature = (
     positions, loop_start, corner_vert, *, faces=2000, kind="quads", primitive=None,
     follow_shape=0.5, adaptivity=0.5, sharp_angle=40.0, mirror="auto", small_parts="keep",
-    small_size=0.0, borders="keep", fill_size=None, weld=1e-5, strict=false, predictor="auto",
-    weights=None, threads=0, seed=0, scale=None, score_samples=10_000, n_crosses=0,
+    small_size=0.0, borders="keep", fill_size=None, handles="keep", seal_size=1.0, weld=1e-5,
+    strict=false, predictor="auto", weights=None, threads=0, seed=0, scale=None, score_samples=10_000, n_crosses=0,
     material_index=None, marked_edges=None, carried_edges=None, cut_edges=None, density=None,
     reduced=None, progress=None, cancel=None,
 ))]
@@ -100,6 +102,8 @@ pub fn remesh<'py>(
     small_size: f64,
     borders: &str,
     fill_size: Option<f64>,
+    handles: &str,
+    seal_size: f64,
     weld: Option<f64>,
     strict: bool,
     predictor: &str,
@@ -151,6 +155,7 @@ pub fn remesh<'py>(
         small_parts: report::choice("small_parts", small_parts)?,
         small_size,
         borders: self::borders(borders, fill_size)?,
+        handles: self::handles(handles, seal_size)?,
         weld,
         strict,
         seed,
@@ -193,6 +198,17 @@ fn borders(word: &str, fill_size: Option<f64>) -> PyResult<Borders> {
         ("fill", Some(size_pct)) => Ok(Borders::FillUpTo(size_pct)),
         _ => Err(PyValueError::new_err(format!(
             "borders: unknown variant `{word}`, expected `keep` or `fill`"
+        ))),
+    }
+}
+
+/// What becomes of handles, by a word and a size.
+fn handles(word: &str, seal_size: f64) -> PyResult<Handles> {
+    match word {
+        "keep" => Ok(Handles::Keep),
+        "seal" => Ok(Handles::SealUpTo(seal_size)),
+        _ => Err(PyValueError::new_err(format!(
+            "handles: unknown variant `{word}`, expected `keep` or `seal`"
         ))),
     }
 }

@@ -134,7 +134,7 @@ pub fn close(
     let mut sheet = Sheet::new(mesh);
     let (filled, mut open): (Vec<_>, Vec<_>) = loops
         .into_iter()
-        .partition(|border| is_filled(mesh, border, settings.fill));
+        .partition(|border| settings.fill.takes(mesh, border));
     for (i, border) in filled.iter().enumerate() {
         progress.at(0.3 * i as f64 / filled.len() as f64)?;
         sheet.cap(border, progress)?;
@@ -168,6 +168,38 @@ pub fn close(
     })
 }
 
+/// A mesh some of whose borders are filled for good.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Filled {
+    /// The mesh: vertices and faces that were given come first and in their order.
+    pub mesh: TriangleMesh,
+    /// How many borders were filled.
+    pub n_filled: usize,
+}
+
+/// Fills the borders that are wanted, given by their edges, each by a membrane as [`close`] makes
+/// them. The mesh may have handles and other borders.
+///
+/// # Errors
+/// [`Error`].
+pub fn fill(
+    mesh: &TriangleMesh,
+    is_wanted: impl Fn(&[HalfedgeId]) -> bool,
+    progress: &Progress,
+) -> Result<Filled, Error> {
+    let mut loops = mesh.border_loops();
+    loops.retain(|border| is_wanted(border));
+    let mut sheet = Sheet::new(mesh);
+    for (i, border) in loops.iter().enumerate() {
+        progress.at(0.9 * i as f64 / loops.len() as f64)?;
+        sheet.cap(border, progress)?;
+    }
+    Ok(Filled {
+        mesh: TriangleMesh::build(sheet.positions, sheet.faces, progress)??,
+        n_filled: loops.len(),
+    })
+}
+
 fn check(mesh: &TriangleMesh, n_loops: usize) -> Result<(), Error> {
     let (_, n) = mesh.face_components();
     if n != 1 {
@@ -179,7 +211,8 @@ fn check(mesh: &TriangleMesh, n_loops: usize) -> Result<(), Error> {
     }
 }
 
-fn length(mesh: &TriangleMesh, border: &[HalfedgeId]) -> f64 {
+/// The length of a border.
+pub fn length(mesh: &TriangleMesh, border: &[HalfedgeId]) -> f64 {
     let edge = |&h: &HalfedgeId| {
         mesh.position(mesh.origin(h))
             .distance(mesh.position(mesh.target(h)))
@@ -187,11 +220,14 @@ fn length(mesh: &TriangleMesh, border: &[HalfedgeId]) -> f64 {
     border.iter().map(edge).sum()
 }
 
-fn is_filled(mesh: &TriangleMesh, border: &[HalfedgeId], fill: Fill) -> bool {
-    match fill {
-        Fill::None => false,
-        Fill::UpTo(most) => length(mesh, border) <= most,
-        Fill::All => true,
+impl Fill {
+    /// Whether a border is to be filled.
+    pub fn takes(self, mesh: &TriangleMesh, border: &[HalfedgeId]) -> bool {
+        match self {
+            Self::None => false,
+            Self::UpTo(most) => length(mesh, border) <= most,
+            Self::All => true,
+        }
     }
 }
 

@@ -21,6 +21,19 @@ impl Deformed {
         progress: &Progress,
     ) -> Result<Self, Error> {
         check_cover(&mesh, &sphere)?;
+        Ok(Self::in_space(mesh, sphere, on_lines, progress)?)
+    }
+
+    /// The same of faces that cover no sphere, as those of a surface with handles, with any points.
+    ///
+    /// # Errors
+    /// When cancelled.
+    pub fn in_space(
+        mesh: PolygonMesh,
+        sphere: Vec<DVec3>,
+        on_lines: Vec<[VertexId; 2]>,
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
         let n_crossing = separate::n_crossing(&mesh, progress)?;
         let report = Report {
             n_feature_goals: on_lines.len(),

@@ -63,7 +63,8 @@ pub use target::Target;
 pub struct Deformed {
     /// The mesh in space. Triangles may be connected otherwise than in the primitive.
     pub mesh: PolygonMesh,
-    /// The sphere point of every vertex, with which the faces cover the sphere once.
+    /// The sphere point of every vertex, with which the faces cover the sphere once; the origin where
+    /// nothing was embedded.
     pub sphere: Vec<DVec3>,
     /// The edges that lie along the target's sharp or marked ones, each once, in order.
     pub features: Vec<[VertexId; 2]>,

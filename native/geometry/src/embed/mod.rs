@@ -169,6 +169,29 @@ pub struct Report {
     pub times: Times,
 }
 
+impl Report {
+    /// What is told where nothing was embedded.
+    pub fn none() -> Self {
+        Self {
+            n_vertices: 0,
+            n_folds: 0,
+            degree: 1,
+            energy: 0.0,
+            n_relaxations: 0,
+            n_sweeps: 0,
+            complete: true,
+            predictor: "none".to_owned(),
+            weights: None,
+            proposal: ProposalReport {
+                degree: 1,
+                ..ProposalReport::default()
+            },
+            repair: RepairReport::default(),
+            times: Times::default(),
+        }
+    }
+}
+
 /// An embedded mesh.
 #[derive(Clone, Debug)]
 pub struct Embedded {

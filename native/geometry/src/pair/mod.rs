@@ -9,10 +9,13 @@
 //! a fold between them, edges that are to stay, how many faces their ends have (Remacle et al. 2012).
 //! Every quad is two positive triangles of the sphere or lies in one such quad, so what covered the
 //! sphere still covers it. Across firm edges nothing is paired: triangles that are left over there
-//! stay, three quads each once all are split. Not done here: laying the quads on the surface (`deform`).
+//! stay, three quads each once all are split. Surfaces with borders and handles are paired as they are
+//! ([`pair_open`]): beside a border a triangle without a partner becomes a quad by a vertex more on
+//! it. Not done here: laying the quads on the surface (`deform`).
 
 mod improve;
 mod matching;
+mod open;
 mod refine;
 mod split;
 mod tips;
@@ -25,7 +28,8 @@ use thiserror::Error;
 
 use crate::mesh::{HalfedgeId, HalfedgeMap, Id, PolygonMesh, TriangleMesh, VertexId};
 use crate::progress::{Cancelled, Progress};
-use crate::sphere_map::SphereMap;
+use crate::sphere_map::{SphereMap, is_positive};
+pub use open::{OpenPairs, pair_open};
 pub use refine::refine;
 pub use split::split;
 
@@ -106,7 +110,12 @@ pub fn pair(map: &SphereMap, stay: Stay<'_>, progress: &Progress) -> Result<Pair
     let mut quads = worth::quads(mesh, stay, &mate);
     let alone = worth::triangles(mesh, &mate);
     let is_held = held(mesh, stay, &alone);
-    let vertices = tips::without(&mut quads, &is_held, map.sphere().as_slice());
+    let sphere = map.sphere().as_slice();
+    let is_inside = |quad: [u32; 4]| {
+        let [p, q, r, s] = quad.map(|u| sphere[u as usize]);
+        is_positive(p, q, r) && is_positive(p, r, s)
+    };
+    let vertices = tips::without(&mut quads, &is_held, &is_inside);
     let quads = named((&quads, &alone), (&vertices, map));
     let firm = stay
         .firm

@@ -7,7 +7,7 @@ use glam::DVec3;
 use crate::mesh::{TriangleMesh, VertexId};
 use crate::progress::{Cancelled, Progress};
 
-/// Cuts the longest edge of a closed mesh in two, again and again, until it has `n_faces` triangles
+/// Cuts the longest edge of a mesh in two, again and again, until it has `n_faces` triangles
 /// or one more. The surface stays as it is. O(n log n).
 ///
 /// # Errors
@@ -60,10 +60,8 @@ impl Finer {
             let [a, b] = [face[i], face[(i + 1) % 3]];
             self.left.insert([a, b], id);
             let [p, q] = [a, b].map(|v| self.positions[v.0 as usize]);
-            if a < b {
-                let length = p.distance_squared(q).to_bits();
-                self.longest.push((length, [a, b]));
-            }
+            let length = p.distance_squared(q).to_bits();
+            self.longest.push((length, [a.min(b), a.max(b)]));
         }
     }
 
@@ -80,19 +78,21 @@ impl Finer {
         let Some((_, [a, b])) = self.longest.pop() else {
             return false;
         };
-        let (Some(f), Some(g)) = (self.left.remove(&[a, b]), self.left.remove(&[b, a])) else {
-            return true;
-        };
-        let [c, d] = [self.apex(f, [a, b]), self.apex(g, [a, b])];
+        // An edge is there once for each of its sides.
+        let sides = [[a, b], [b, a]].map(|ends| (ends, self.left.remove(&ends)));
         let m = VertexId(self.positions.len() as u32);
-        let [p, q] = [a, b].map(|v| self.positions[v.0 as usize]);
-        self.positions.push(p.midpoint(q));
-        let next = self.faces.len();
-        self.faces.extend([[m; 3]; 2]);
-        self.enter(f, [a, m, c]);
-        self.enter(next, [m, b, c]);
-        self.enter(g, [b, m, d]);
-        self.enter(next + 1, [m, a, d]);
+        if sides.iter().any(|(_, face)| face.is_some()) {
+            let [p, q] = [a, b].map(|v| self.positions[v.0 as usize]);
+            self.positions.push(p.midpoint(q));
+        }
+        for ([a, b], face) in sides {
+            let Some(face) = face else { continue };
+            let apex = self.apex(face, [a, b]);
+            let next = self.faces.len();
+            self.faces.push([m; 3]);
+            self.enter(face, [a, m, apex]);
+            self.enter(next, [m, b, apex]);
+        }
         true
     }
 }

@@ -1,30 +1,29 @@
 //! Vertices with two quads alone: both become one.
 
-use glam::DVec3;
-
 use crate::mesh::{Id, VertexId};
-use crate::sphere_map::is_positive;
 
 /// Fewer quads than this are left as they are: six cover a sphere like a cube.
 const FEWEST: usize = 6;
 /// No quad.
 const GONE: [u32; 4] = [u32::MAX; 4];
 
-/// Joins the two quads of every vertex that has no others and is not held, as long as nothing folds
-/// on the sphere. Returns the vertices that are left, in their order.
+/// Joins the two quads of every vertex that has no others and is not held, as long as what comes
+/// out is a quad whose diagonal from the first corner to the third is inside. Returns the vertices
+/// that are left, in their order.
 pub(super) fn without(
     quads: &mut Vec<[u32; 4]>,
     is_held: &[bool],
-    sphere: &[DVec3],
+    is_inside: &dyn Fn([u32; 4]) -> bool,
 ) -> Vec<VertexId> {
-    let mut rings: Vec<Vec<u32>> = vec![Vec::new(); sphere.len()];
+    let n = is_held.len();
+    let mut rings: Vec<Vec<u32>> = vec![Vec::new(); n];
     for (i, quad) in (0..).zip(&*quads) {
         for &v in quad {
             rings[v as usize].push(i);
         }
     }
     let mut n_left = quads.len();
-    let mut queue: Vec<u32> = (0..sphere.len() as u32).rev().collect();
+    let mut queue: Vec<u32> = (0..n as u32).rev().collect();
     while let Some(v) = queue.pop() {
         if is_held[v as usize] {
             continue;
@@ -32,8 +31,8 @@ pub(super) fn without(
         let &[first, second] = &rings[v as usize][..] else {
             continue;
         };
-        let Some(joined) = joined([quads[first as usize], quads[second as usize]], v, sphere)
-        else {
+        let both = [quads[first as usize], quads[second as usize]];
+        let Some(joined) = joined(both, v, is_inside) else {
             continue;
         };
         if n_left <= FEWEST {
@@ -54,12 +53,16 @@ pub(super) fn without(
         quads[second as usize] = GONE;
     }
     quads.retain(|quad| *quad != GONE);
-    let vertices = (0..sphere.len()).filter(|&v| is_held[v] || !rings[v].is_empty());
+    let vertices = (0..n).filter(|&v| is_held[v] || !rings[v].is_empty());
     vertices.map(VertexId::from_index).collect()
 }
 
 /// The quad around a vertex with two quads, from one end of an inner diagonal.
-fn joined([one, other]: [[u32; 4]; 2], v: u32, sphere: &[DVec3]) -> Option<[u32; 4]> {
+fn joined(
+    [one, other]: [[u32; 4]; 2],
+    v: u32,
+    is_inside: &dyn Fn([u32; 4]) -> bool,
+) -> Option<[u32; 4]> {
     let around = |quad: [u32; 4]| {
         let at = quad.iter().position(|&u| u == v)?;
         Some([1, 2, 3].map(|step| quad[(at + step) % 4]))
@@ -70,9 +73,5 @@ fn joined([one, other]: [[u32; 4]; 2], v: u32, sphere: &[DVec3]) -> Option<[u32;
         return None;
     }
     let ways = [[a, b, c, e], [b, c, e, a]];
-    let is_inner = |quad: &[u32; 4]| {
-        let [p, q, r, s] = quad.map(|u| sphere[u as usize]);
-        is_positive(p, q, r) && is_positive(p, r, s)
-    };
-    ways.into_iter().find(is_inner)
+    ways.into_iter().find(|&quad| is_inside(quad))
 }

@@ -27,7 +27,7 @@ const FLAT: f64 = 0.75 * PI;
 /// By how much a pair is made dearer that leaves two quads at a vertex.
 const EASING: f64 = 0.7;
 
-/// For every triangle its neighbours, and what the pair is worth.
+/// For every triangle its neighbours, and what the pair is worth. Borders have to be firm.
 pub(super) fn arcs(mesh: &TriangleMesh, stay: Stay<'_>) -> Vec<[(u32, f64); 3]> {
     let kept = stay.kept;
     let valences: Vec<usize> = mesh.vertex_ids().map(|v| mesh.valence(v)).collect();
@@ -37,10 +37,10 @@ pub(super) fn arcs(mesh: &TriangleMesh, stay: Stay<'_>) -> Vec<[(u32, f64); 3]> 
         FACE * (n.min(MOST_FACES) as f64 - 6.0) - tip
     };
     let arc = |h: HalfedgeId| {
-        let twin = mesh.twin(h).expect("a sphere map has no border");
         if stay.is_firm(h) {
             return (NONE, 0.0);
         }
+        let twin = mesh.twin(h).expect("borders are firm");
         // The same for both sides, to the last bit.
         let first = h.min(twin);
         let stays = if kept[h] || kept[twin] { KEPT } else { 0.0 };
@@ -67,8 +67,8 @@ pub(super) fn ease(
     mate: &[u32],
 ) -> bool {
     let is_paired = |h: &HalfedgeId| {
-        let twin = mesh.twin(*h).expect("a sphere map has no border");
-        !stay.is_firm(*h) && mate[h.face().index()] == twin.face().0
+        let is_mate = |twin: HalfedgeId| mate[h.face().index()] == twin.face().0;
+        !stay.is_firm(*h) && mesh.twin(*h).is_some_and(is_mate)
     };
     let mut found = false;
     for v in mesh.vertex_ids() {
@@ -81,7 +81,7 @@ pub(super) fn ease(
             }
             found |= !paired.is_empty();
             for h in paired {
-                let twin = mesh.twin(h).expect("a sphere map has no border");
+                let twin = mesh.twin(h).expect("pairs lie on both sides");
                 for side in [h, twin] {
                     arcs[side.face().index()][side.corner()].1 -= EASING;
                 }
@@ -139,7 +139,7 @@ pub(super) fn quads(mesh: &TriangleMesh, stay: Stay<'_>, mate: &[u32]) -> Vec<[u
 
 /// The corners of the two triangles at an edge, from one end of it around.
 fn corners(mesh: &TriangleMesh, h: HalfedgeId) -> [VertexId; 4] {
-    let twin = mesh.twin(h).expect("a sphere map has no border");
+    let twin = mesh.twin(h).expect("pairs lie on both sides");
     [
         mesh.origin(h),
         mesh.origin(twin.prev()),
@@ -150,7 +150,7 @@ fn corners(mesh: &TriangleMesh, h: HalfedgeId) -> [VertexId; 4] {
 
 /// The sine of the worst corner of a quad, seen along its own normal: 1 for a rectangle, negative
 /// where a corner turns the wrong way.
-fn squareness(p: [DVec3; 4]) -> f64 {
+pub(super) fn squareness(p: [DVec3; 4]) -> f64 {
     let normal = (p[2] - p[0]).cross(p[3] - p[1]).normalize_or_zero();
     let edges: [DVec3; 4] = array::from_fn(|i| (p[(i + 1) % 4] - p[i]).normalize_or_zero());
     let turns = (0..4).map(|i| edges[i].cross(edges[(i + 1) % 4]).dot(normal));

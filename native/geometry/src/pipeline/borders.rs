@@ -49,6 +49,8 @@ pub struct Opened {
     pub n_filled: usize,
     /// How the others were closed while quads were made; none where there are no others.
     pub way: Option<Closure>,
+    /// How many of its handles were sealed for good.
+    pub n_sealed: usize,
 }
 
 /// How borders are closed that are opened again.
@@ -62,18 +64,27 @@ pub enum Closure {
 }
 
 impl Opened {
-    /// What is told of a part; nothing where it had no borders.
-    pub(super) fn new([n_borders, n_filled]: [usize; 2], is_doubled: bool) -> Option<Self> {
+    /// What is told of a part; nothing where it had no borders and no handle was sealed.
+    pub(super) fn new([n_borders, n_filled]: [usize; 2], n_sealed: usize) -> Option<Self> {
+        (n_borders + n_sealed > 0).then_some(Self {
+            n_borders,
+            n_filled,
+            way: None,
+            n_sealed,
+        })
+    }
+
+    /// The same once it was closed.
+    pub(super) fn closed(self, is_doubled: bool) -> Self {
         let way = if is_doubled {
             Closure::Doubled
         } else {
             Closure::Capped
         };
-        (n_borders > 0).then_some(Self {
-            n_borders,
-            n_filled,
-            way: (n_filled < n_borders).then_some(way),
-        })
+        Self {
+            way: (self.n_filled < self.n_borders).then_some(way),
+            ..self
+        }
     }
 }
 

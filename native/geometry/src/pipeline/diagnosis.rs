@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::borders::SphereAlone;
 use super::kept::{Flaw, Reason, count};
 use super::split::Part;
-use super::{Settings, handle};
+use super::{Settings, handles};
 use crate::clean::{self, Apart, SharedLine, Tangle};
 use crate::groups::Groups;
 use crate::mesh::{FaceId, HalfedgeId, Id, PolygonMesh, TriangleMesh, VertexId};
@@ -29,7 +29,7 @@ pub fn parts(
     };
     let mut surfaces = surfaces(apart, component, n);
     if told.alone.handles.is_some() && surfaces.iter().any(|surface| surface.genus() != 0) {
-        let loops = handle::loops(&apart.mesh);
+        let loops = handles::loops(&apart.mesh);
         for (surface, edges) in surfaces.iter_mut().zip(loops) {
             surface.handle = edges.iter().map(|e| e.map(|v| apart.origin[v])).collect();
         }

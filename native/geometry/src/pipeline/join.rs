@@ -99,7 +99,7 @@ pub fn join_embeddings(reports: &[embed::Report], areas: &[f64]) -> embed::Repor
     };
     let n_vertices = count(|r| r.n_vertices);
     // Of the levels that were proposed.
-    let n_triangles = count(|r| 2 * r.proposal.n_vertices - 4);
+    let n_triangles = count(|r| (2 * r.proposal.n_vertices).saturating_sub(4));
     let n_folds = count(|r| r.proposal.n_folds);
     embed::Report {
         n_vertices,

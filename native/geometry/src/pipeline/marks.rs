@@ -9,7 +9,7 @@ use super::{Error, Input};
 use crate::mesh::{HalfedgeMap, Id, PolygonMesh, TriangleMesh, VertexId};
 
 /// Edges known by the places of their ends.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Marks(HashSet<[[u64; 3]; 2]>);
 
 impl Marks {
@@ -20,6 +20,11 @@ impl Marks {
             key(ends[0], ends[1])
         };
         Self(edges.iter().map(key).collect())
+    }
+
+    /// Edges in the frame of work, by the places of their ends.
+    pub fn at(ends: impl Iterator<Item = [DVec3; 2]>) -> Self {
+        Self(ends.map(|[a, b]| key(a, b)).collect())
     }
 
     /// Whether there are none.

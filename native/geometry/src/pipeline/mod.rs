@@ -27,7 +27,7 @@ mod flow;
 mod flowed;
 mod frame;
 mod ground;
-mod handle;
+mod handles;
 mod join;
 mod kept;
 mod laid;
@@ -49,6 +49,7 @@ mod sides;
 mod small;
 mod split;
 mod stay;
+mod uncut;
 mod verbs;
 mod warning;
 mod ways;
@@ -62,6 +63,7 @@ pub use crosses::Cross;
 pub use error::Error;
 pub use fault::Fault;
 pub use flowed::Flowed;
+pub use handles::Handles;
 pub use kept::{Flaw, Kept, Outcome, Reason};
 pub use laid::Instead;
 pub use mirror::{Mirror, Plane, Through};
@@ -138,7 +140,8 @@ pub struct Remeshed {
     pub mesh: PolygonMesh,
     /// The material of each new face, where the input had materials.
     pub materials: Option<Vec<i32>>,
-    /// The point of the unit sphere of each new vertex, each part on a sphere of its own.
+    /// The point of the unit sphere of each new vertex, each part on a sphere of its own; the origin
+    /// where a part was not embedded or stays as it was.
     pub sphere: Vec<DVec3>,
     /// The edges that lie on edges of the input that were to be carried.
     pub carried: Vec<CarriedEdge>,

@@ -12,8 +12,8 @@ use super::ground::Ground;
 use super::laid::{Instead, Laid};
 use super::marks::Marks;
 use super::mirror::{Faced, Plane, Role, face};
-use super::open::Closing;
-use super::paired::paired;
+use super::open::{Closing, Whole};
+use super::paired::{paired, told};
 use super::report::{Mirrored, PartReport};
 use super::settings::{Primitive, Settings};
 use super::{Error, ways};
@@ -70,15 +70,51 @@ struct Ready<'a> {
     closing: Option<Closing>,
     /// What is told of its borders.
     opened: Option<Opened>,
-    /// What borders were filled with.
-    filling: Vec<[DVec3; 3]>,
+}
+
+/// What is told of a part however it is made.
+#[derive(Clone, Copy)]
+struct Came {
+    n_input_faces: usize,
+    n_asked_faces: usize,
+    area: f64,
 }
 
 impl<'a> PartJob<'a> {
     pub fn run(self, clock: &mut Clock, progress: &Progress<'_>) -> Result<PartResult, Error> {
-        let [n_input_faces, n_asked_faces] = [self.part.n_faces(), self.wanted.n_faces];
-        let area = measure::total_area(&self.part);
-        let ready = self.ready(progress)?;
+        let Self { part, wanted } = self;
+        let came = Came {
+            n_input_faces: part.n_faces(),
+            n_asked_faces: wanted.n_faces,
+            area: measure::total_area(&part),
+        };
+        let mut whole = Whole::new(part, (wanted.settings, wanted.marks), progress)?;
+        let filling = std::mem::take(&mut whole.filling);
+        let made = if whole.is_open() {
+            let reason = match wanted.too_many_handles(&whole) {
+                Some(reason) => Err(reason),
+                None => told(wanted.run((whole.clone(), came), clock, progress))?,
+            };
+            match reason {
+                Ok(made) => made,
+                Err(reason) => wanted.run_uncut((&whole, came), reason, clock, progress)?,
+            }
+        } else {
+            wanted.run((whole, came), clock, progress)?
+        };
+        Ok(PartResult { filling, ..made })
+    }
+}
+
+impl Wanted<'_> {
+    /// Makes the faces of a part, closed first if it is open.
+    fn run(
+        &self,
+        (whole, came): (Whole, Came),
+        clock: &mut Clock,
+        progress: &Progress<'_>,
+    ) -> Result<PartResult, Error> {
+        let ready = self.ready(whole, progress)?;
         let (wanted, closing) = (ready.wanted, ready.closing);
         let stage = progress.part("decimate", 0.0, 0.2);
         let reduce = || wanted.reduce((&ready.faced, closing.as_ref()), &stage);
@@ -88,13 +124,13 @@ impl<'a> PartJob<'a> {
         let (hierarchy, embedded) = clock.step("embed", embed)?;
         let closing = closing.zip(reduction.small);
         let refused = ready.faced.refused.clone();
-        let asked = (&wanted, n_asked_faces);
+        let asked = (&wanted, came.n_asked_faces);
         let ground = Ground::new(ready.faced, closing, asked, clock, progress)?;
         let start = (&hierarchy, embedded.map);
         let made = wanted.make(start, &ground, clock, &progress.part("", 0.5, 1.0))?;
         let report = PartReport {
-            n_input_faces,
-            n_asked_faces,
+            n_input_faces: came.n_input_faces,
+            n_asked_faces: came.n_asked_faces,
             n_faces: made.deformed.mesh.n_faces(),
             reduced: reduction.reduced,
             decimate: reduction.report,
@@ -110,35 +146,87 @@ impl<'a> PartJob<'a> {
             sphere: made.deformed.sphere,
             features: made.deformed.features,
             crosses: made.crosses,
-            filling: ready.filling,
-            area,
+            filling: Vec::new(),
+            area: came.area,
+            report,
+        })
+    }
+
+    /// The same without anything closed or cut.
+    fn run_uncut(
+        &self,
+        (whole, came): (&Whole, Came),
+        reason: String,
+        clock: &mut Clock,
+        progress: &Progress<'_>,
+    ) -> Result<PartResult, Error> {
+        let laid = self.uncut(whole, clock, progress)?;
+        let of_part = match self.mirror.0 {
+            Role::Whole => Some("only quads that flow can be".to_owned()),
+            Role::Alone(reason) => reason.clone(),
+            Role::ImageOf(_) => None,
+        };
+        let flow = (self.settings.primitive() == Primitive::Flow).then(|| Flowed::Refused {
+            reason,
+            instead: Instead::PairedTriangles,
+        });
+        let report = PartReport {
+            n_input_faces: came.n_input_faces,
+            n_asked_faces: came.n_asked_faces,
+            n_faces: laid.deformed.mesh.n_faces(),
+            reduced: None,
+            decimate: None,
+            opened: whole.told,
+            embedding: embed::Report::none(),
+            flow,
+            mirrored: of_part.map(|reason| Mirrored::Refused { reason }),
+            sphere: None,
+            deform: laid.deformed.report,
+        };
+        Ok(PartResult {
+            mesh: laid.deformed.mesh,
+            sphere: laid.deformed.sphere,
+            features: laid.deformed.features,
+            crosses: Vec::new(),
+            filling: Vec::new(),
+            area: came.area,
             report,
         })
     }
 
     /// Closes the part and makes it its own image, where it is to be.
-    fn ready(self, progress: &Progress<'_>) -> Result<Ready<'a>, Error> {
-        let Self { part, wanted } = self;
-        let closing = Closing::new(&part, (wanted.settings, wanted.n_faces), progress)?;
-        let opened = closing.as_ref().and_then(Closing::told);
-        let filling = closing.as_ref().map(Closing::filling).unwrap_or_default();
-        let (part, closing) = match closing {
-            Some(closing) if closing.is_filled() => (closing.into_mesh(), None),
-            Some(closing) => (closing.mesh().clone(), Some(closing)),
-            None => (part, None),
+    fn ready(&self, whole: Whole, progress: &Progress<'_>) -> Result<Ready<'_>, Error> {
+        let closing = if whole.is_open() {
+            let closing = Closing::new(&whole, (self.marks, self.n_faces), progress)?;
+            Some(closing)
+        } else {
+            None
+        };
+        let opened = match &closing {
+            Some(closing) => whole.told.map(|told| told.closed(closing.is_doubled())),
+            None => whole.told,
+        };
+        let part = match &closing {
+            Some(closing) => closing.mesh().clone(),
+            None => whole.mesh,
         };
         let wanted = match &closing {
-            Some(closing) => wanted.of_closed(closing),
-            None => wanted,
+            Some(closing) => self.of_closed(closing),
+            None => *self,
         };
-        let (marked, density) = (wanted.marks.on(&part), wanted.density.on(&part));
+        let mut marked = wanted.marks.on(&part);
+        let pieces = [Some(&whole.pieces), closing.as_ref().map(|c| &c.pieces)];
+        for pieces in pieces.into_iter().flatten().filter(|p| !p.is_empty()) {
+            let more = pieces.on(&part);
+            marked = marked.iter().zip(&more).map(|(a, b)| *a || *b).collect();
+        }
+        let density = wanted.density.on(&part);
         let role = wanted.role(closing.as_ref());
         Ok(Ready {
             wanted,
             faced: face((part, marked, density), (&role, wanted.mirror.1)),
             closing,
             opened,
-            filling,
         })
     }
 }
@@ -171,7 +259,12 @@ impl Wanted<'_> {
             Ok(part) => Ok(Made::flowing(part)),
             Err(reason) => {
                 let part = progress.part("", 0.9, 1.0);
-                let (laid, instead) = self.last_resort(start, ground, clock, &part)?;
+                let resort = self.last_resort(start, ground, clock, &part);
+                let (laid, instead) = match resort {
+                    // Why they do not flow says more than what came of pairs.
+                    Err(Error::Unopened { .. }) => return Err(Error::Unopened { reason }),
+                    resort => resort?,
+                };
                 let flowed = Flowed::Refused { reason, instead };
                 Ok(self.made((laid, Some(flowed)), ground.axis))
             }
@@ -216,7 +309,7 @@ impl Wanted<'_> {
         Made {
             deformed: laid.deformed,
             flow,
-            mirrored: is_asked.then(|| told(Err("only quads that flow can be".to_owned()))),
+            mirrored: is_asked.then(|| mirrored(Err("only quads that flow can be".to_owned()))),
             sphere: laid.sphere,
             crosses: Vec::new(),
         }
@@ -265,14 +358,14 @@ impl Made {
         Self {
             deformed: part.deformed,
             flow: Some(part.flowed),
-            mirrored: part.mirrored.map(told),
+            mirrored: part.mirrored.map(mirrored),
             sphere: Some(part.sphere),
             crosses: part.crosses,
         }
     }
 }
 
-fn told(mirrored: Result<(), String>) -> Mirrored {
+fn mirrored(mirrored: Result<(), String>) -> Mirrored {
     match mirrored {
         Ok(()) => Mirrored::Used,
         Err(reason) => Mirrored::Refused { reason },

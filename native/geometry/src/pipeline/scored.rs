@@ -111,7 +111,7 @@ impl Judging<'_> {
         score::score(reference, self.output, wanted, progress)
     }
 
-    /// How the input hangs together once its borders are filled that were to be, and sheets joined
+    /// How the input hangs together once its borders are filled and its handles sealed that were to be, and sheets joined
     /// where they meet.
     fn topology(&self, progress: &Progress<'_>) -> Result<Topology, Cancelled> {
         let came = match self.joined.rejoined {
@@ -122,11 +122,16 @@ impl Judging<'_> {
             None => topology_of_triangles(&self.prepared.mesh),
         };
         let opened = self.joined.parts.iter().filter_map(|part| part.opened);
-        let n_filled: usize = opened.map(|opened| opened.n_filled).sum();
+        let (mut n_filled, mut n_sealed) = (0, 0);
+        for opened in opened {
+            n_filled += opened.n_filled;
+            n_sealed += opened.n_sealed as i64;
+        }
         let n_borders = came.n_borders.saturating_sub(n_filled);
         Ok(Topology {
             closed: n_borders == 0,
             n_borders,
+            genus: came.genus.map(|genus| genus - n_sealed),
             ..came
         })
     }

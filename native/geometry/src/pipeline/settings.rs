@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Error;
 use super::borders::Borders;
+use super::handles::Handles;
 use super::mirror::Mirror;
 use super::small::SmallParts;
 use crate::elementary::powf;
@@ -159,6 +160,8 @@ pub struct Settings {
     pub weld: Option<f64>,
     /// What becomes of borders.
     pub borders: Borders,
+    /// What becomes of handles.
+    pub handles: Handles,
     /// Whether a part that cannot be done, and is not merely small, ends the run.
     pub strict: bool,
     /// Where the adaptive primitive's samples start; equal seeds give equal bytes.
@@ -185,6 +188,7 @@ impl Default for Settings {
             small_size: 0.0,
             weld: Some(clean::WELD),
             borders: Borders::default(),
+            handles: Handles::default(),
             strict: false,
             seed: 0,
             threads: 0,
@@ -241,6 +245,7 @@ impl Settings {
         self.style.check()?;
         self.check_sizes()?;
         self.check_borders()?;
+        self.check_handles()?;
         let degrees = self.sharp_angle;
         if !(0.0..=180.0).contains(&degrees) {
             return Err(Error::AngleOutOfRange { degrees });

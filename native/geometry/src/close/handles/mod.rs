@@ -6,11 +6,16 @@
 //! lay      edges along it (split)
 //! slit     its vertices doubled: two borders, twins
 //! weld     and once there are quads, twins joined again
+//!
+//! near     short loops near one vertex
+//! seal     all handles with short loops cut at once, and both sides of each given a lid
 //! ```
 //!
 //! A handle is cut the short way: a torus round its tube, a mug round its ear.
 
 mod lay;
+mod near;
+mod seal;
 mod search;
 mod slit;
 mod split;
@@ -25,6 +30,7 @@ use crate::mesh::{FaceId, FaceMap, HalfedgeId, HalfedgeMap, TriangleMesh, Vertex
 use crate::progress::{Cancelled, Progress};
 
 use lay::lay;
+pub use seal::{Sealed, seal};
 use search::{Loop, Search};
 use slit::slit;
 use split::{Pieces, Place};

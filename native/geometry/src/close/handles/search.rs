@@ -31,11 +31,11 @@ pub struct Loop {
 
 /// How far a vertex is and from where it was reached.
 #[derive(Clone, Copy)]
-struct Step {
-    distance: f64,
-    from: VertexId,
+pub(super) struct Step {
+    pub distance: f64,
+    pub from: VertexId,
     /// How many vertices were settled before it, once it is.
-    rank: Option<u32>,
+    pub rank: Option<u32>,
 }
 
 const FAR: Step = Step {
@@ -46,17 +46,19 @@ const FAR: Step = Step {
 
 /// Finds loops through one vertex after another.
 pub struct Search<'a> {
-    mesh: &'a TriangleMesh,
+    pub(super) mesh: &'a TriangleMesh,
+    /// What counts as a length of 1.
+    size: f64,
     is_sharp: HalfedgeMap<bool>,
     /// How long each edge is to a loop.
-    costs: HalfedgeMap<f64>,
+    pub(super) costs: HalfedgeMap<f64>,
     /// Vertices that no loop may pass.
     is_barred: VertexMap<bool>,
     /// The border that each vertex is on.
-    border: VertexMap<u32>,
+    pub(super) border: VertexMap<u32>,
     n_borders: usize,
-    steps: VertexMap<Step>,
-    settled: Vec<VertexId>,
+    pub(super) steps: VertexMap<Step>,
+    pub(super) settled: Vec<VertexId>,
     touched: Vec<VertexId>,
 }
 
@@ -74,8 +76,10 @@ impl<'a> Search<'a> {
         }
         let is_barred = border.iter().map(|&b| avoids_borders && b != u32::MAX);
         let is_barred: VertexMap<bool> = is_barred.collect();
+        let size = size_of(mesh);
         Self {
-            costs: costs(mesh, &is_sharp, &is_barred),
+            costs: costs((mesh, size), &is_sharp, &is_barred),
+            size,
             is_barred,
             is_sharp,
             border,
@@ -85,6 +89,11 @@ impl<'a> Search<'a> {
             touched: Vec::new(),
             mesh,
         }
+    }
+
+    /// A length as it counts here.
+    pub(super) fn inside(&self, length: f64) -> f64 {
+        length / self.size
     }
 
     /// Whether an edge counts as sharp.
@@ -133,7 +142,7 @@ impl<'a> Search<'a> {
         Ok(shortest.filter(|found| found.length < limit))
     }
 
-    fn forget(&mut self) {
+    pub(super) fn forget(&mut self) {
         for v in self.touched.drain(..) {
             self.steps[v] = FAR;
         }
@@ -141,7 +150,12 @@ impl<'a> Search<'a> {
     }
 
     /// Reaches what is nearer to a vertex than `radius` and than to vertices grown from before.
-    fn grow(&mut self, root: VertexId, radius: f64, progress: &Progress) -> Result<(), Cancelled> {
+    pub(super) fn grow(
+        &mut self,
+        root: VertexId,
+        radius: f64,
+        progress: &Progress,
+    ) -> Result<(), Cancelled> {
         let mut heap = BinaryHeap::new();
         self.reach(root, (0.0, root), &mut heap);
         while let Some(Reverse((bits, v))) = heap.pop() {
@@ -187,12 +201,12 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn has(&self, v: VertexId) -> bool {
+    pub(super) fn has(&self, v: VertexId) -> bool {
         self.steps[v].rank.is_some()
     }
 
     /// Whether what was reached, one piece, has the Euler number of a disc: it holds no loop then.
-    fn is_disc(&self) -> bool {
+    pub(super) fn is_disc(&self) -> bool {
         let mesh = self.mesh;
         let mut euler = self.settled.len() as i64;
         for h in self.settled.iter().flat_map(|&v| mesh.outgoing(v)) {
@@ -240,7 +254,7 @@ impl<'a> Search<'a> {
     }
 
     /// The loop that an edge closes: the ways of the tree to its ends from where they part.
-    fn closed(&self, h: HalfedgeId) -> Loop {
+    pub(super) fn closed(&self, h: HalfedgeId) -> Loop {
         let mut sides = [self.mesh.origin(h), self.mesh.target(h)].map(|v| vec![v]);
         let mut length = self.costs[h];
         let [mut a, mut b] = [sides[0][0], sides[1][0]];
@@ -262,10 +276,16 @@ impl<'a> Search<'a> {
 
 type Heap = BinaryHeap<Reverse<(u64, u32)>>;
 
+/// The largest coordinate of a mesh.
+fn size_of(mesh: &TriangleMesh) -> f64 {
+    let largest = |size: f64, p: &glam::DVec3| size.max(p.abs().max_element());
+    mesh.positions().iter().fold(f64::MIN_POSITIVE, largest)
+}
+
 /// The length of every edge as a share of the mesh's size, less where it is sharp, more beside
 /// vertices that are barred.
 fn costs(
-    mesh: &TriangleMesh,
+    (mesh, size): (&TriangleMesh, f64),
     is_sharp: &HalfedgeMap<bool>,
     is_barred: &VertexMap<bool>,
 ) -> HalfedgeMap<f64> {
@@ -273,8 +293,6 @@ fn costs(
     for v in mesh.vertex_ids().filter(|&v| is_barred[v]) {
         mesh.neighbours(v).for_each(|next| is_beside[next] = true);
     }
-    let largest = |size: f64, p: &glam::DVec3| size.max(p.abs().max_element());
-    let size = mesh.positions().iter().fold(f64::MIN_POSITIVE, largest);
     let cost = |h: HalfedgeId| {
         let ends = [mesh.origin(h), mesh.target(h)];
         let [a, b] = ends.map(|v| mesh.position(v) / size);

@@ -16,22 +16,37 @@ pub fn slit(
     line: &[VertexId],
     progress: &Progress,
 ) -> Result<(Pieces, Vec<VertexId>), Cancelled> {
+    let (pieces, mut copies) = slit_all(pieces, &[line], progress)?;
+    let copies = copies.pop().expect("one loop has one list of copies");
+    Ok((pieces, copies))
+}
+
+/// The same with loops no two of which share a vertex.
+pub fn slit_all<L: AsRef<[VertexId]>>(
+    pieces: Pieces,
+    lines: &[L],
+    progress: &Progress,
+) -> Result<(Pieces, Vec<Vec<VertexId>>), Cancelled> {
     let mesh = &pieces.mesh;
     let mut positions = mesh.positions().to_vec();
     let mut faces = mesh.faces().to_vec();
-    let mut copies = Vec::with_capacity(line.len());
-    for (i, &v) in line.iter().enumerate() {
-        let [before, after] = [(i + line.len() - 1) % line.len(), (i + 1) % line.len()];
-        let copy = VertexId::from_index(positions.len());
-        copies.push(copy);
-        positions.push(mesh.position(v));
-        for h in fan(mesh, [line[before], v, line[after]]) {
-            faces[h.face().index()][h.corner()] = copy;
+    let mut all = Vec::with_capacity(lines.len());
+    for line in lines.iter().map(AsRef::as_ref) {
+        let mut copies = Vec::with_capacity(line.len());
+        for (i, &v) in line.iter().enumerate() {
+            let [before, after] = [(i + line.len() - 1) % line.len(), (i + 1) % line.len()];
+            let copy = VertexId::from_index(positions.len());
+            copies.push(copy);
+            positions.push(mesh.position(v));
+            for h in fan(mesh, [line[before], v, line[after]]) {
+                faces[h.face().index()][h.corner()] = copy;
+            }
         }
+        all.push(copies);
     }
     let mesh = TriangleMesh::build(positions, faces, progress)?;
-    let mesh = mesh.expect("a loop that touches nothing can be cut");
-    Ok((Pieces { mesh, ..pieces }, copies))
+    let mesh = mesh.expect("loops that touch nothing can be cut");
+    Ok((Pieces { mesh, ..pieces }, all))
 }
 
 /// The halfedges that leave a vertex on the left of a way through it, from the one that goes on

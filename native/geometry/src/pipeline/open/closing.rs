@@ -7,15 +7,16 @@ use glam::DVec3;
 use super::loops::Loops;
 use super::puncture::{self, Puncture};
 use super::sheet::folds;
+use super::whole::{Whole, marks_of_pieces};
 use super::{Corner, Opening, SAME, polyline};
 use crate::close::{self, Closed, handles};
 use crate::decimate;
 use crate::deform::Target;
-use crate::measure::{Polyline, Topology, topology_of_triangles, total_area};
+use crate::measure::{Polyline, Topology, total_area};
 use crate::mesh::{HalfedgeMap, Id, TriangleMesh, VertexId, VertexMap};
-use crate::pipeline::borders::Opened;
+use crate::pipeline::Error;
 use crate::pipeline::even::Marked;
-use crate::pipeline::{Error, Settings};
+use crate::pipeline::marks::Marks;
 use crate::progress::{Cancelled, Progress};
 
 /// A part that was closed.
@@ -29,10 +30,8 @@ pub struct Closing {
     punctures: Vec<Puncture>,
     /// The shape that is to come out.
     wanted: Topology,
-    /// What is told of its borders.
-    pub(super) told: Option<Opened>,
-    /// Borders up to this length are filled for good.
-    pub(super) asked: f64,
+    /// Its marked edges that cuts have split, piece by piece.
+    pub pieces: Marks,
 }
 
 /// A part reduced to the size of the map and closed.
@@ -49,8 +48,6 @@ pub struct Small {
 
 /// Up to which length borders are closed before quads are made.
 struct Limits {
-    /// Up to this one the settings have them filled for good.
-    asked: f64,
     /// Up to this one they are punctures, opened again once there are quads.
     puncture: f64,
     /// No border as long as this is closed: those of cuts are needed, and the shortest of them is
@@ -59,32 +56,24 @@ struct Limits {
 }
 
 impl Closing {
-    /// Cuts the handles of a part that is to get so many faces, and closes its borders; none if it
-    /// has neither.
+    /// Cuts the handles of a part that is to get so many faces, and closes its borders.
     ///
     /// # Errors
     /// A part that cannot be closed; when cancelled.
     pub fn new(
-        part: &TriangleMesh,
-        (settings, n_faces): (&Settings, usize),
+        Whole { mesh, shape, .. }: &Whole,
+        (marks, n_faces): (&Marks, usize),
         progress: &Progress<'_>,
-    ) -> Result<Option<Self>, Error> {
-        let shape = topology_of_triangles(part);
-        if shape.closed && shape.genus == Some(0) {
-            return Ok(None);
-        }
+    ) -> Result<Self, Error> {
+        let (part, shape) = (mesh, *shape);
         let cut = handles::cut(part, progress)?;
         let area = total_area(part);
         let edge = (area / n_faces.max(1) as f64).sqrt();
-        let limits = Limits::new(settings.close().fill, &cut, (area, edge));
+        let limits = Limits::new(&cut, (area, edge));
         let borders: Vec<Polyline> = Loops::all(&cut.mesh).closed_lines(&cut.mesh).collect();
-        let is_filled = |border: &&Polyline| border.length() <= limits.filled();
-        let n_filled = borders.iter().filter(is_filled).count();
-        let n_filled = n_filled.min(shape.n_borders);
-        let n_borders = shape.n_borders - n_filled;
         let punctures = borders
             .into_iter()
-            .filter(|border| limits.is_puncture(border.length()))
+            .filter(|border| border.length() <= limits.closed())
             .map(|border| Puncture::new(border, edge))
             .collect();
         let settings = close::Settings {
@@ -93,35 +82,19 @@ impl Closing {
         };
         let closed = close::close(&cut.mesh, &settings, progress)?;
         let cuts = cut.twins.iter().map(|[one, _]| polyline(&cut.mesh, one));
-        Ok(Some(Self {
+        Ok(Self {
             cuts: cuts.collect(),
             punctures,
-            wanted: Topology {
-                n_borders,
-                closed: n_borders == 0,
-                ..shape
-            },
-            told: Opened::new([shape.n_borders, n_filled], closed.n_doubled > 0),
-            asked: limits.filled(),
+            wanted: shape,
+            pieces: marks_of_pieces((part, marks), (&cut.mesh, &cut.sides)),
             closed,
             open: cut.mesh,
-        }))
+        })
     }
 
-    /// What is told of it.
-    pub fn told(&self) -> Option<Opened> {
-        self.told
-    }
-
-    /// Whether all its borders were filled for good: then nothing is opened again.
-    pub fn is_filled(&self) -> bool {
-        let n_open = self.closed.n_capped + self.closed.n_doubled + self.punctures.len();
-        n_open == 0
-    }
-
-    /// The part, closed; all of it.
-    pub fn into_mesh(self) -> TriangleMesh {
-        self.closed.mesh
+    /// Whether it was doubled across its longest border.
+    pub fn is_doubled(&self) -> bool {
+        self.closed.n_doubled > 0
     }
 
     /// The part, closed.
@@ -225,36 +198,20 @@ impl Small {
 
 impl Limits {
     /// Those of a part of some area that is to get quads of some edge length.
-    fn new(fill: close::Fill, cut: &handles::Cut, (area, edge): (f64, f64)) -> Self {
+    fn new(cut: &handles::Cut, (area, edge): (f64, f64)) -> Self {
         let of_cuts = cut.twins.iter().map(|[one, _]| polyline(&cut.mesh, one));
         let shortest = of_cuts.fold(f64::INFINITY, |least, cut| least.min(cut.length()));
         // A circle of length l has the area l²/4π.
         let round = (puncture::LARGEST * area * TAU * 2.0).sqrt();
         Self {
-            asked: match fill {
-                // Not even those of no length.
-                close::Fill::None => f64::NEG_INFINITY,
-                close::Fill::UpTo(longest) => longest,
-                close::Fill::All => f64::INFINITY,
-            },
             puncture: (puncture::LONGEST * edge).min(round),
             below: shortest * (1.0 - SAME),
         }
     }
 
-    /// Up to which length they are filled for good.
-    fn filled(&self) -> f64 {
-        self.asked.min(self.below)
-    }
-
     /// Up to which length they are closed before quads are made.
     fn closed(&self) -> f64 {
-        self.asked.max(self.puncture).min(self.below)
-    }
-
-    /// Whether a border of some length is closed, but not for good.
-    fn is_puncture(&self, length: f64) -> bool {
-        length > self.filled() && length <= self.closed()
+        self.puncture.min(self.below)
     }
 }
 

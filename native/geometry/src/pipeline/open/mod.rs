@@ -1,7 +1,7 @@
 //! Parts with borders and handles: closed before anything else, reopened once quads lie on them.
 //!
 //! ```text
-//! part ─ cut ─▶ genus 0 ─ close ─▶ closed, faces real or virtual ─ flow, borders firm ─▶ quads ─ reopen ─▶ real quads ─ weld twins
+//! part ─ seal, fill ─▶ whole ─ cut ─▶ genus 0 ─ close ─▶ closed, faces real or virtual ─ flow, borders firm ─▶ quads ─ reopen ─▶ real quads ─ weld twins
 //! ```
 //!
 //! The map is made of the part reduced while it is open, which keeps borders, and closed then.
@@ -9,8 +9,9 @@
 //!
 //! | file | what it says |
 //! |---|---|
+//! | `whole` | what is closed for good |
 //! | `closing` | how the part is closed, and its coarser version |
-//! | `filling` | what fills borders for good |
+//! | `filling` | what is real of a closed part |
 //! | `loops` | where the borders run and have corners |
 //! | `sheet` | which side of a sheet is the real one |
 //! | `firm` | which edges quads that flow have to meet |
@@ -28,6 +29,7 @@ mod puncture;
 mod reopen;
 mod sheet;
 mod weld;
+mod whole;
 
 use glam::DVec3;
 
@@ -37,6 +39,7 @@ use crate::measure::{FeatureLine, Polyline, Topology};
 use crate::mesh::{FaceMap, HalfedgeMap, TriangleMesh, VertexId, VertexMap};
 pub use closing::{Closing, Small};
 use puncture::Puncture;
+pub use whole::Whole;
 
 /// Places nearer to each other than this share of the diagonal are one.
 const SAME: f64 = 1e-5;

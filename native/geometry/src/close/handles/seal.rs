@@ -1,0 +1,180 @@
+//! Seals handles for good: those round which a short loop goes, thousands of them at once.
+//!
+//! From roots all over the surface what is near is looked at: where it is no disc, its shortest loops
+//! are found by a tree and a co-tree, and drawn tight. Of loops that touch no other all are cut at
+//! once but those of a spanning tree of the pieces that this would leave: what is left hangs together,
+//! and no two loops of one handle are cut, nor one that parts the surface. Again, until no loop is
+//! found; then both sides of every cut get a lid.
+
+use std::collections::HashSet;
+
+use super::near::Region;
+use super::slit::slit_all;
+use super::split::Pieces;
+use super::tighten::tighten;
+use super::{Search, round, without_chords};
+use crate::close;
+use crate::groups::Groups;
+use crate::measure::topology_of_triangles;
+use crate::mesh::{HalfedgeId, HalfedgeMap, Id, TriangleMesh, VertexId};
+use crate::progress::Progress;
+
+/// Roots are no farther from each other than this share of the longest loop.
+const SPACING: f64 = 0.25;
+/// Loops of edges are so much longer than tight ones, or may count as longer.
+const CROOKED: f64 = 1.75;
+/// At most so many rounds; most handles are cut in the first two.
+const MOST_ROUNDS: usize = 50;
+
+/// A mesh some of whose handles are sealed.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Sealed {
+    /// The mesh: given vertices and faces come first and in their order, then what they were split
+    /// into, then the faces of lids.
+    pub mesh: TriangleMesh,
+    /// The halfedge of the old mesh that each halfedge, but for lids, is or was a piece of; none
+    /// across a face.
+    pub sides: HalfedgeMap<Option<HalfedgeId>>,
+    /// How many handles were sealed.
+    pub n_sealed: usize,
+}
+
+/// A loop of edges that may be cut.
+struct Candidate {
+    vertices: Vec<VertexId>,
+    /// Its length once it is drawn tight.
+    length: f64,
+}
+
+/// Seals every handle of one component round which a tight loop no longer than `size` goes.
+///
+/// Loops touch neither borders nor each other. About n log n in time, whatever the number of
+/// handles.
+///
+/// # Errors
+/// What [`close::fill`] says.
+pub fn seal(mesh: &TriangleMesh, size: f64, progress: &Progress) -> Result<Sealed, close::Error> {
+    let mut pieces = Pieces::whole(mesh);
+    let mut is_side = vec![false; mesh.n_vertices()];
+    let genus = topology_of_triangles(mesh).genus.unwrap_or(0).max(0);
+    let mut n_left = genus as usize;
+    // Where loops were found before; none looks everywhere.
+    let mut near: Option<Vec<VertexId>> = None;
+    for n_round in 0..MOST_ROUNDS {
+        progress.at(0.9 * n_round as f64 / MOST_ROUNDS as f64)?;
+        if n_left == 0 || size <= 0.0 {
+            break;
+        }
+        pieces = without_chords(pieces, progress)?;
+        is_side.resize(pieces.mesh.n_vertices(), false);
+        let is_everywhere = near.is_none();
+        let (found, roots) = candidates(&pieces.mesh, (size, near.as_deref()), progress)?;
+        let chosen = apart(&pieces.mesh, found, progress)?;
+        if chosen.is_empty() {
+            if is_everywhere {
+                break;
+            }
+            near = None;
+            continue;
+        }
+        n_left = n_left.saturating_sub(chosen.len());
+        let (cut, copies) = slit_all(pieces, &chosen, progress)?;
+        is_side.resize(cut.mesh.n_vertices(), false);
+        for &v in chosen.iter().chain(&copies).flatten() {
+            is_side[v.index()] = true;
+        }
+        pieces = cut;
+        near = Some(roots);
+    }
+    let mesh = &pieces.mesh;
+    let filled = close::fill(
+        mesh,
+        |border| is_side[mesh.origin(border[0]).index()],
+        progress,
+    )?;
+    Ok(Sealed {
+        mesh: filled.mesh,
+        sides: pieces.sides,
+        n_sealed: filled.n_filled / 2,
+    })
+}
+
+/// Short loops that touch no other, and the roots from which they were seen.
+fn candidates(
+    mesh: &TriangleMesh,
+    (size, roots): (f64, Option<&[VertexId]>),
+    progress: &Progress,
+) -> Result<(Vec<Candidate>, Vec<VertexId>), close::Error> {
+    let mut search = Search::new(mesh, true);
+    let mut region = Region::new(mesh.n_faces());
+    let everywhere = match roots {
+        Some(_) => Vec::new(),
+        None => search.net(SPACING * size, progress)?,
+    };
+    let roots = roots.unwrap_or(&everywhere);
+    let mut found: Vec<Candidate> = Vec::new();
+    let mut seen = Vec::new();
+    let mut known = HashSet::new();
+    for &root in roots {
+        if !search.is_free(root) {
+            continue;
+        }
+        let loops = search.near((root, CROOKED * size), &mut region, progress)?;
+        if loops.is_empty() {
+            continue;
+        }
+        seen.push(root);
+        for vertices in loops {
+            let mut sorted = vertices.clone();
+            sorted.sort_unstable();
+            if !known.insert(sorted) {
+                continue;
+            }
+            let stops = tighten(mesh, &vertices, |_| false);
+            let tight: Vec<_> = stops.iter().map(|stop| stop.position(mesh)).collect();
+            let length = round(&tight);
+            if length <= size {
+                found.push(Candidate { vertices, length });
+            }
+        }
+    }
+    found.sort_by(|a, b| a.length.total_cmp(&b.length));
+    let mut taken = HashSet::new();
+    found.retain(|candidate| {
+        let is_free = candidate.vertices.iter().all(|v| !taken.contains(v));
+        if is_free {
+            taken.extend(candidate.vertices.iter().copied());
+        }
+        is_free
+    });
+    Ok((found, seen))
+}
+
+/// Those of some loops that can all be cut and leave one piece; longer ones stay first.
+fn apart(
+    mesh: &TriangleMesh,
+    found: Vec<Candidate>,
+    progress: &Progress,
+) -> Result<Vec<Vec<VertexId>>, close::Error> {
+    if found.is_empty() {
+        return Ok(Vec::new());
+    }
+    let lines: Vec<Vec<VertexId>> = found.iter().map(|found| found.vertices.clone()).collect();
+    let (cut, copies) = slit_all(Pieces::whole(mesh), &lines, progress)?;
+    let (piece, n_pieces) = cut.mesh.face_components();
+    let side = |v: VertexId| {
+        let mut around = cut.mesh.outgoing(v);
+        around
+            .next()
+            .map_or(0, |h| piece[h.face().index()] as usize)
+    };
+    let mut groups = Groups::new(n_pieces);
+    let mut chosen = Vec::new();
+    for (line, copies) in lines.into_iter().zip(&copies).rev() {
+        if !groups.link(side(line[0]), side(copies[0])) {
+            chosen.push(line);
+        }
+    }
+    chosen.reverse();
+    Ok(chosen)
+}

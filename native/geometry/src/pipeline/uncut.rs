@@ -1,0 +1,117 @@
+//! Faces of a part with borders or handles where none can be made any other way.
+//!
+//! The part's own triangles, more or fewer, are paired as they are: nothing is cut, closed or opened, so
+//! that the topology is the part's whatever it is.
+
+use glam::DVec3;
+
+use super::Error;
+use super::clock::Clock;
+use super::laid::Laid;
+use super::open::Whole;
+use super::part::Wanted;
+use super::settings::Kind;
+use crate::deform::{Deformed, Target};
+use crate::mesh::{HalfedgeMap, PolygonMesh, TriangleMesh, VertexId};
+use crate::progress::Progress;
+use crate::{decimate, measure, pair};
+
+/// How often triangles are made, so that their pairs have the count.
+const N_TRIES: usize = 3;
+/// The share that the count may be off before they are made again.
+const NEAR_COUNT: f64 = 0.01;
+/// A handle needs so many faces round it: of fewer none is cut, which costs time and comes to nothing.
+const PER_HANDLE: i64 = 8;
+
+/// Faces, and those of their edges that lie on sharp or marked ones.
+struct Faces {
+    mesh: PolygonMesh,
+    kept: Vec<[VertexId; 2]>,
+}
+
+impl Wanted<'_> {
+    /// Why nothing is tried that needs handles to be cut; none where there are few.
+    pub fn too_many_handles(&self, whole: &Whole) -> Option<String> {
+        let n_handles = whole.shape.genus.unwrap_or(0);
+        let n_faces = self.n_faces as i64;
+        (PER_HANDLE * n_handles > n_faces)
+            .then(|| format!("{n_handles} handles are too many for {n_faces} faces"))
+    }
+
+    /// Faces of the part's own triangles.
+    ///
+    /// # Errors
+    /// When cancelled.
+    pub fn uncut(
+        &self,
+        whole: &Whole,
+        clock: &mut Clock,
+        progress: &Progress<'_>,
+    ) -> Result<Laid, Error> {
+        let per_face = match self.settings.kind {
+            Kind::Triangles => 1.0,
+            Kind::Quads => 2.0,
+        };
+        let mut n_triangles = per_face * self.n_faces as f64;
+        let mut faces = self.faces_of(whole, n_triangles, clock, progress)?;
+        for _ in 1..N_TRIES {
+            let share = self.n_faces as f64 / faces.mesh.n_faces().max(1) as f64;
+            if (share - 1.0).abs() <= NEAR_COUNT {
+                break;
+            }
+            n_triangles *= share;
+            faces = self.faces_of(whole, n_triangles, clock, progress)?;
+        }
+        let Faces { mesh, kept } = faces;
+        let target = Target::new(whole.mesh.clone(), progress)?;
+        // Nothing was embedded.
+        let sphere = vec![DVec3::ZERO; mesh.n_vertices()];
+        let deformed = Deformed::in_space(mesh, sphere, kept, progress)?;
+        Ok(Laid::new(deformed, None, &target))
+    }
+
+    /// Faces of so many triangles of the part.
+    fn faces_of(
+        &self,
+        whole: &Whole,
+        n_triangles: f64,
+        clock: &mut Clock,
+        progress: &Progress<'_>,
+    ) -> Result<Faces, Error> {
+        let n_faces = (n_triangles.round() as usize).max(4);
+        let part = progress.part("decimate", 0.0, 0.5);
+        let mesh = clock.step("decimate", || {
+            if whole.mesh.n_faces() > n_faces {
+                let settings = decimate::Settings { n_faces };
+                return Ok(decimate::simplify(&whole.mesh, &settings, &part)?.mesh);
+            }
+            Ok::<_, Error>(pair::refine(&whole.mesh, n_faces, &part)?)
+        })?;
+        let kept = self.kept(whole, &mesh);
+        let part = progress.part("pair", 0.5, 1.0);
+        if self.settings.kind == Kind::Triangles {
+            let kept = mesh.halfedge_ids().filter(|&h| kept[h]);
+            let ends = kept.map(|h| [mesh.origin(h), mesh.target(h)]);
+            let mut kept: Vec<_> = ends.map(|[a, b]| [a.min(b), a.max(b)]).collect();
+            kept.sort_unstable();
+            kept.dedup();
+            let mesh = PolygonMesh::from(&mesh);
+            return Ok(Faces { mesh, kept });
+        }
+        let pairs = clock.step("pair", || pair::pair_open(&mesh, &kept, &part))?;
+        Ok(Faces {
+            mesh: pairs.quads,
+            kept: pairs.kept,
+        })
+    }
+
+    /// The sharp and marked edges of triangles of a part.
+    fn kept(&self, whole: &Whole, mesh: &TriangleMesh) -> HalfedgeMap<bool> {
+        let sharp = measure::sharp_edges(mesh, self.settings.sharp_angle.to_radians());
+        let marked = [self.marks.on(mesh), whole.pieces.on(mesh)];
+        let halfedges = mesh.halfedge_ids();
+        halfedges
+            .map(|h| sharp[h] || marked.iter().any(|marked| marked[h]))
+            .collect()
+    }
+}
