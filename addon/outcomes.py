@@ -2,6 +2,7 @@
 """What is told of what became of each object, and kept for the panel."""
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import bpy
@@ -53,18 +54,22 @@ def done(outcome: Done, report: dict[str, Any], old: Before) -> Told:
     report["nodes"] = [each.name for each in thing.modifiers if modifiers.has_nodes(each)]
     if old.print:
         runs.forget_left(old.print)
-    if report["kept"]:
-        n_parts = len(report["parts"]) + len(report["kept"])
-        numbers = spots.in_result(task.arrays, outcome.result)
-        if report["half"]:
-            # The mesh is a part of the result.
-            numbers = spots.gone(task.arrays)
-        complaints = spots.complaints(report["kept"], numbers, n_parts)
-        title = "; ".join(words.counts(report))
+    if complaints := _complaints(outcome, report):
+        title = "; ".join(words.counts(report)) if report["kept"] else ""
         runs.remember_left(thing, Left(title, False, complaints))
     state = "warned" if words.warnings(report) else "done"
     lines = [_line(name, state, words.line(report)) for name in (task.name, *task.others)]
     return Told(lines, words.sentence(report), words.is_grave(report))
+
+
+def _complaints(outcome: Done, report: dict[str, Any]) -> list[Complaint]:
+    """What was left of an object that was done, and what was made anew."""
+    task, n_parts = outcome.task, len(report["parts"]) + len(report["kept"])
+    # Half of a result has other numbers.
+    numbers = spots.gone if report["half"] else partial(spots.in_result, result=outcome.result)
+    found = spots.complaints(report["kept"], numbers(task.arrays), n_parts)
+    made = [] if report["half"] else spots.made(outcome.result, words.filled(report))
+    return found + made
 
 
 def refused(failed: Failed) -> Told:

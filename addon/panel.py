@@ -220,7 +220,8 @@ def _draw_left(
 ) -> None:
     """Why an object, or parts of it, were left as they were, each with the button Show."""
     icon = "CANCEL" if left.is_whole else "ERROR"
-    _draw_text(column, left.title.format(name), icon, _n_letters(context))
+    if left.title:
+        _draw_text(column, left.title.format(name), icon, _n_letters(context))
     for i, complaint in enumerate(left.complaints):
         share = _BESIDE if complaint.spot else 1.0
         row = column.split(factor=share)
@@ -239,8 +240,11 @@ def _draw_text(column: bpy.types.UILayout, text: str, icon: str, n_letters: int)
 def _draw_score(column: bpy.types.UILayout, report: dict[str, Any], n_letters: int) -> None:
     for text in words.faults(report):
         _draw_text(column, text, "ERROR", n_letters)
+    # These have rows of their own, with the button Show.
+    shown = [] if report["half"] else words.filled(report)
     for text in words.exceptions(report):
-        _draw_text(column, text, "INFO", n_letters)
+        if text not in shown:
+            _draw_text(column, text, "INFO", n_letters)
     for what, value in rows(report):
         row = column.split(factor=_OF_ROW)
         row.label(text=what)

@@ -37,7 +37,7 @@ class Last:
 class Left:
     """What a run has left of a mesh as it was, and why."""
 
-    #: What was left; `{}` stands for the object's name.
+    #: What was left; `{}` stands for the object's name. Empty where nothing was.
     title: str
     #: Whether the whole object was.
     is_whole: bool

@@ -309,7 +309,7 @@ SECTIONS = {
     "Symmetry": ("mirror", "mirror_modifier"),
     "Guides and Density": ("marked_edges", "density"),
     "Keep": (
-        *("borders", "fill_size", "small_parts", "small_size"),
+        *("borders", "fill_size", "handles", "seal_size", "small_parts", "small_size"),
         *("use_modifiers", "use_weld", "weld", "keep_original", "weights_limit"),
     ),
     "Advanced": ("primitive", "predictor", "threads", "seed"),

@@ -92,6 +92,17 @@ def complaints(kept: list[dict[str, Any]], numbers: Numbers, n_parts: int) -> li
     return [_complaint(group, numbers, n_parts) for group in groups.values()]
 
 
+def made(result: orbflow_native.Remeshed, told: list[str]) -> list[Complaint]:
+    """A row for the faces that lie on what was filled and sealed, if there are any."""
+    faces = result.filled_faces
+    if not len(faces):
+        return []
+    corners = result.corner_vert[result.loop_start[faces[0]] :][:3]
+    place = tuple(result.positions[corners].mean(0).tolist())
+    exact = words.count(len(faces), "face") + " on what was closed for good"
+    return [Complaint(", ".join(told), exact, Spot(np.zeros((0, 2), np.int32), faces, place))]
+
+
 def _complaint(group: list[_Reason], numbers: Numbers, n_parts: int) -> Complaint:
     (part, reason), *others = group
     if others:

@@ -178,9 +178,8 @@ def exceptions(report: dict[str, Any]) -> list[str]:
     """In words what else is otherwise than was asked for."""
     lost = ", ".join(sorted(set(report["lost"])))
     told = [_without_marks(report), f"not carried over: {lost}" if lost else ""]
-    told += [_cleaned(report), _welded(report), _parted(report), _filled(report)]
-    told += [_sealed(report), _shown(report)]
-    told += _modifiers(report)
+    told += [_cleaned(report), _welded(report), _parted(report), _shown(report)]
+    told += filled(report) + _modifiers(report)
     return [each for each in told if each]
 
 
@@ -210,18 +209,12 @@ def _parted(report: dict[str, Any]) -> str:
     return f"taken apart at {edges} into {count(sheets, 'sheet')}" if n else ""
 
 
-def _filled(report: dict[str, Any]) -> str:
-    """How many borders were filled."""
+def filled(report: dict[str, Any]) -> list[str]:
+    """How many borders were filled, and how many handles sealed."""
     opened = [part["opened"] for part in report["parts"] if part["opened"]]
-    n = sum(each["n_filled"] for each in opened)
-    return f"{count(n, 'border')} filled" if n else ""
-
-
-def _sealed(report: dict[str, Any]) -> str:
-    """How many handles were sealed."""
-    opened = [part["opened"] for part in report["parts"] if part["opened"]]
-    n = sum(each["n_sealed"] for each in opened)
-    return f"{count(n, 'handle')} sealed" if n else ""
+    n_filled, n_sealed = (sum(each[name] for each in opened) for name in ("n_filled", "n_sealed"))
+    told = [f"{count(n_filled, 'border')} filled"] if n_filled else []
+    return told + ([f"{count(n_sealed, 'handle')} sealed"] if n_sealed else [])
 
 
 def _modifiers(report: dict[str, Any]) -> list[str]:

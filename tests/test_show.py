@@ -11,6 +11,7 @@ import orbflow_native
 import pytest
 from conftest import FIXTURES
 from sidebar import panel_of
+from test_open import new, tube
 from test_operator import Open, addon, press, select
 
 Reason = dict[str, Any]
@@ -288,3 +289,21 @@ def test_a_part_that_stays_is_shown_where_it_lies_in_the_result(open_fixture: Op
     bpy.ops.object.mode_set(mode="OBJECT")
     assert edges == {tuple(sorted(pair)) for pair in border(half)}
     assert len(edges) == n_stay
+
+
+def test_what_was_filled_is_selected_in_the_result(open_fixture: Open) -> None:
+    open_fixture("03")
+    thing = new(*tube())
+    press.orbflow_remesh(faces=100, borders="FILL")
+    layout = panel_of(thing, width=1200)
+    texts = [text for text, _ in layout.drawn]
+    row = texts.index("DOT 2 borders filled")
+    assert "INFO 2 borders filled" not in texts
+    assert texts[row + 1] == "NONE Show"
+    button = layout.buttons[row + 1]
+    assert bpy.ops.object.orbflow_show(name=button.name, row=button.row) == {"FINISHED"}
+    _, faces, _ = selected(thing)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    lids = {face.index for face in thing.data.polygons if abs(face.normal.z) > 0.9}
+    assert lids
+    assert faces == lids

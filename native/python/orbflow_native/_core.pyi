@@ -124,6 +124,10 @@ class Remeshed:
         """What of the input every element comes from; `None` without `cut_edges`."""
 
     @property
+    def filled_faces(self) -> _Ints:
+        """`(N,) int32`: the faces that lie on what filled borders and sealed handles."""
+
+    @property
     def crosses(self) -> _Floats:
         """`(N, 3, 3) float32`: place and two arms of crosses, arms half as long as edges."""
 

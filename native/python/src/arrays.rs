@@ -206,6 +206,11 @@ pub fn cross_array(py: Python<'_>, crosses: &[Cross], scale: DVec3) -> PyResult<
         .unbind())
 }
 
+/// The `(N,) int32` array of faces.
+pub fn face_array(py: Python<'_>, faces: &[FaceId]) -> Py<PyArray1<i32>> {
+    PyArray1::from_iter(py, faces.iter().map(|face| face.0 as i32)).unbind()
+}
+
 /// The `(F,) int32` array of where each face's corners start.
 pub fn start_array(py: Python<'_>, mesh: &PolygonMesh) -> Py<PyArray1<i32>> {
     let starts = mesh.starts().iter().take(mesh.n_faces());

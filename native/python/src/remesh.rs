@@ -34,6 +34,8 @@ pub struct Remeshed {
     carried_from: Py<PyArray1<i32>>,
     /// What of the input every element comes from; `None` without `cut_edges`.
     origins: Option<Py<Origins>>,
+    /// `(N,) int32`: the faces that lie on what filled borders and sealed handles.
+    filled_faces: Py<PyArray1<i32>>,
     /// `(N, 3, 3) float32`: of crosses of the field the place and two arms, half as long as edges.
     crosses: Py<PyArray3<f32>>,
     /// What is told of the run.
@@ -227,6 +229,7 @@ impl Remeshed {
             carried_edges: arrays::end_array(py, &remeshed.carried)?,
             carried_from: arrays::from_array(py, &remeshed.carried),
             origins: origins.transpose()?,
+            filled_faces: arrays::face_array(py, &remeshed.filled),
             crosses: arrays::cross_array(py, &remeshed.crosses, scale.recip())?,
             report: report::dict(py, &remeshed.report)?.unbind(),
             kept_faces: remeshed.kept_faces,

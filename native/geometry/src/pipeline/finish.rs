@@ -109,6 +109,7 @@ impl Made<'_> {
             sphere: std::mem::take(&mut joined.sphere),
             carried: found.edges,
             origins: None,
+            filled: joined.on_filling(prepared, progress)?,
         };
         if input.materials.is_none() && input.cuts.is_none() {
             return Ok((made, report));

@@ -14,6 +14,7 @@ mod attempt;
 mod borders;
 mod carried;
 mod clock;
+mod closed;
 mod crosses;
 mod density;
 mod diagnosis;
@@ -79,7 +80,7 @@ use glam::DVec3;
 
 use crate::clean::Apart;
 use crate::embed::OffsetPredictor;
-use crate::mesh::{PolygonMesh, VertexId};
+use crate::mesh::{FaceId, PolygonMesh, VertexId};
 use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
 use crate::{clean, transfer};
@@ -147,6 +148,8 @@ pub struct Remeshed {
     pub carried: Vec<CarriedEdge>,
     /// What of the input every element comes from, where that was asked for.
     pub origins: Option<Origins>,
+    /// The faces that lie on what filled borders and sealed handles.
+    pub filled: Vec<FaceId>,
     /// Crosses of the field that the quads follow, as many as were asked for or fewer; of quads that
     /// flow alone.
     pub crosses: Vec<Cross>,

@@ -16,6 +16,7 @@ pub struct Elements {
     pub sphere: Vec<DVec3>,
     pub carried: Vec<CarriedEdge>,
     pub origins: Option<Origins>,
+    pub filled: Vec<FaceId>,
 }
 
 impl Elements {
@@ -27,6 +28,7 @@ impl Elements {
             sphere: self.sphere,
             carried: self.carried,
             origins: self.origins,
+            filled: self.filled,
             crosses,
             kept_faces,
             report,

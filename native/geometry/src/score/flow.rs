@@ -2,7 +2,6 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -155,6 +154,8 @@ fn alignment(
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
     use crate::mesh::PolygonMesh;
 

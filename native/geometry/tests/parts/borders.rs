@@ -38,6 +38,7 @@ fn borders_are_no_reason_but_for_primitives_that_have_none() {
         assert_eq!((found.n_borders, found.genus), (1 - n_filled, Some(0)));
         let opened = result.report.parts[0].opened.unwrap();
         assert_eq!((opened.n_borders, opened.n_filled), (1, n_filled));
+        assert_eq!(result.filled.is_empty(), n_filled == 0);
         assert!(result.report.kept.is_empty());
     }
 }
