@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::edges::Twins;
 use super::mend::Soup;
 use super::pairs::Pairing;
-use super::sheets::{self, Parted, SharedLine, Sorted, Turned};
+use super::sheets::{self, Parted, SharedLine, SharedPoint, Sorted, Turned};
 use super::triangulate::Triangulated;
 use super::{Error, Report, compact, fans, orient};
 use crate::groups::Groups;
@@ -26,6 +26,10 @@ pub struct Apart {
     pub origin: VertexMap<VertexId>,
     /// The lines of edges of more than two faces, at which sheets were parted.
     pub shared: Vec<SharedLine>,
+    /// The lines of such edges at which solids touch, each of which goes on there.
+    pub touching: Vec<SharedLine>,
+    /// The points where surfaces touch, and those where lines end.
+    pub points: Vec<SharedPoint>,
     /// The parts that are no surfaces, in the order of their first faces.
     pub tangles: Vec<Tangle>,
     /// The input's positions with seams closed, where there were any to close.
@@ -100,20 +104,20 @@ pub(super) fn sort(
         is_reversed,
         is_sound,
     };
-    let (mut apart, shared) = built(soup.triangulated, &parted, &turned, progress)?;
-    report.n_shared_edges = shared.iter().map(|line| line.edges().count()).sum();
-    report.n_sheets = sheets::count(&shared);
-    (apart.shared, apart.tangles, apart.report) = (shared, tangles, report);
+    let mut apart = built(soup.triangulated, &parted, &turned, progress)?;
+    report.n_shared_edges = apart.shared.iter().map(|line| line.edges().count()).sum();
+    report.n_sheets = sheets::count(&apart.shared);
+    (apart.tangles, apart.report) = (tangles, report);
     Ok(apart)
 }
 
-/// A mesh of triangles that agree, and the lines that its sheets share.
+/// A mesh of triangles that agree, with the lines and points that its sheets share.
 fn built(
     mut triangulated: Triangulated,
     parted: &Parted,
     turned: &Turned,
     progress: &Progress,
-) -> Result<(Apart, Vec<SharedLine>), Error> {
+) -> Result<Apart, Error> {
     let middles = parted
         .is_crowded
         .then(|| sheets::split_at_middles(&mut triangulated, &parted.twins));
@@ -122,23 +126,27 @@ fn built(
         std::mem::take(&mut triangulated.faces),
     );
     let origin = compacted.was.iter();
-    let origin = origin.map(|v| triangulated.origins[v.index()]).collect();
+    let origin: VertexMap<VertexId> = origin.map(|v| triangulated.origins[v.index()]).collect();
     progress.at(0.95)?;
     let mesh = TriangleMesh::build(compacted.positions, compacted.faces, progress)??;
-    let shared = middles.map_or_else(Vec::new, |middles| {
+    let lines = middles.map(|middles| {
         let sorted = Sorted::new((turned, &middles), &compacted.was, &mesh);
-        sheets::told(&parted.lines, &triangulated, &sorted)
+        [&parted.lines, &parted.touching].map(|lines| sheets::told(lines, &triangulated, &sorted))
     });
-    let apart = Apart {
+    let [shared, touching] = lines.unwrap_or_default();
+    let own = |v: VertexId| triangulated.positions[v.index()];
+    let points = sheets::points((&mesh, &origin, own), [&shared, &touching]);
+    Ok(Apart {
         mesh,
         source: FaceMap::from_vec(triangulated.source),
         origin,
-        shared: Vec::new(),
+        shared,
+        touching,
+        points,
         tangles: Vec::new(),
         moved: None,
         report: Report::default(),
-    };
-    Ok((apart, shared))
+    })
 }
 
 /// The parts with one side only, and which triangles are in none of them.

@@ -77,6 +77,7 @@ impl Edges {
 const NONE: u32 = u32::MAX;
 
 /// The other halfedge at the edge of each halfedge.
+#[derive(Clone)]
 pub(super) struct Twins(Vec<u32>);
 
 impl Twins {

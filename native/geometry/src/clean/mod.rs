@@ -43,7 +43,7 @@ use mend::Soup;
 use polygons::Polygons;
 pub use report::Report;
 pub use seam::{WELD, distance};
-pub use sheets::{SharedLine, Strand};
+pub use sheets::{Fan, SharedLine, SharedPoint, Strand};
 use triangulate::Triangulated;
 use weld::Reach;
 
@@ -278,6 +278,8 @@ fn already_solid(
         source: FaceMap::from_vec(triangulated.source.clone()),
         origin,
         shared: Vec::new(),
+        touching: Vec::new(),
+        points: Vec::new(),
         tangles: Vec::new(),
         moved: None,
         report,

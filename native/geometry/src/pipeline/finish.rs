@@ -41,7 +41,8 @@ impl Made<'_> {
     ) -> Result<Remeshed, Error> {
         let crosses = std::mem::take(&mut self.joined.crosses);
         let crosses = crosses::leave(crosses, &self.prepared.frame);
-        let staying = Staying::new(self.input.mesh, self.parts.staying(self.input.mesh));
+        let faces = self.parts.staying(self.input.mesh);
+        let staying = Staying::new(self.input.mesh, faces, &self.joined.met);
         let stage = progress.part("transfer", 0.9, 0.92);
         let carrying = || self.elements(&staying, &stage);
         let (mut made, carried) = clock.step("transfer", carrying)?;

@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::crosses::Cross;
 use super::part::PartResult;
 use super::report::{PartReport, Rejoined};
+use super::stay::Met;
 use crate::embed;
 use crate::mesh::{PolygonMesh, VertexId};
 
@@ -23,6 +24,8 @@ pub struct Joined {
     pub parts: Vec<PartReport>,
     /// Where sheets met; none where they did nowhere.
     pub rejoined: Option<Rejoined>,
+    /// What was made where faces stay as they were.
+    pub met: Met,
 }
 
 /// Puts the parts one after the other; one part stays as it is.
@@ -67,6 +70,7 @@ pub fn join(results: Vec<PartResult>) -> Joined {
         embedding: join_embeddings(&embeddings, &areas),
         parts,
         rejoined: None,
+        met: Met::default(),
     }
 }
 

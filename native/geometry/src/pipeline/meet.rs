@@ -7,53 +7,74 @@ use super::frame::{Frame, Prepared, bits};
 use super::join::Joined;
 use super::report::{Mirrored, PartReport, Rejoined};
 use super::split::{Fate, Parts};
-use crate::clean::{SharedLine, Strand};
+use super::stay::Met;
+use crate::clean::{Fan, SharedLine, Strand};
 use crate::mesh::{Id, PolygonMesh, VertexId};
 use crate::progress::{Cancelled, Progress};
-use crate::rejoin::{self, Given, Line, Sheet, rejoin};
+use crate::rejoin::{self, Corner, Given, Line, Sheet, Touch, rejoin};
 
-/// The lines along which sheets meet, at least one of which was remeshed.
+/// The lines along which sheets meet and the points where they touch, at which at least one was
+/// remeshed.
 pub struct Meetings {
     lines: Vec<Line>,
-    /// Of each, which parts meet there, in the order of its strands.
-    parts: Vec<Vec<usize>>,
-    /// Which of them have no sheet that stays as it was.
-    are_done: Vec<bool>,
+    touches: Vec<Touch>,
+    /// The input's places of the points of each line, and of each touch, at which faces stay.
+    staying: [Vec<Vec<[u64; 3]>>; 2],
 }
 
 impl Meetings {
-    /// The lines of a mesh, in the frame of work.
+    /// The lines and points of a mesh, in the frame of work.
     pub fn new((mesh, frame): (&PolygonMesh, &Frame), parts: &Parts) -> Self {
         let mut meetings = Self {
             lines: Vec::new(),
-            parts: Vec::new(),
-            are_done: Vec::new(),
+            touches: Vec::new(),
+            staying: [Vec::new(), Vec::new()],
         };
-        for line in &parts.shared {
+        let place = |v: VertexId| frame.enter(&[mesh.position(v)])[0];
+        for line in parts.shared.iter().chain(&parts.touching) {
             let fates = line.strands.iter().map(|strand| parts.fate(strand.sheet));
             let strands = line.strands.iter().zip(fates.clone());
             let done = strands.filter_map(|(strand, fate)| match fate {
-                Fate::Done(part) => Some((part, strand.is_border)),
+                Fate::Done(sheet) => Some(rejoin::Strand {
+                    sheet,
+                    is_border: strand.is_border,
+                    ends: strand.ends(),
+                }),
                 _ => None,
             });
-            let done: Vec<(usize, bool)> = done.collect();
+            let done: Vec<rejoin::Strand> = done.collect();
             let n_staying = fates.filter(|&fate| fate == Fate::Stays).count() + line.n_tangled();
             if done.is_empty() || done.len() + n_staying < 2 {
                 continue;
             }
-            meetings.are_done.push(n_staying == 0);
-            let points: Vec<_> = line.vertices.iter().map(|&v| mesh.position(v)).collect();
-            let strand = |&(_, is_border): &(usize, bool)| rejoin::Strand {
-                faces: 0..0,
-                is_border,
-            };
+            let keys = line.vertices.iter().map(|&v| bits(mesh.position(v)));
+            meetings.staying[0].push(keys.filter(|_| n_staying > 0).collect());
             meetings.lines.push(Line {
-                points: frame.enter(&points),
+                points: line.vertices.iter().map(|&v| place(v)).collect(),
                 is_closed: line.is_closed,
-                strands: done.iter().map(strand).collect(),
+                strands: done,
+                stays: n_staying > 0,
             });
-            let parts = done.into_iter().map(|(part, _)| part);
-            meetings.parts.push(parts.collect());
+        }
+        for point in &parts.points {
+            let corner = |fan: &Fan| match parts.fate(fan.sheet) {
+                Fate::Done(sheet) => Some(Corner {
+                    sheet,
+                    name: fan.vertex.index(),
+                }),
+                _ => None,
+            };
+            let corners: Vec<Corner> = point.fans.iter().filter_map(corner).collect();
+            let stays = |fan: &Fan| parts.fate(fan.sheet) == Fate::Stays;
+            let stays = point.fans.iter().any(stays);
+            if corners.len() + usize::from(stays) > 1 && !corners.is_empty() {
+                let key = Some(bits(mesh.position(point.vertex)));
+                meetings.staying[1].push(key.filter(|_| stays).into_iter().collect());
+                meetings.touches.push(Touch {
+                    place: place(point.vertex),
+                    corners,
+                });
+            }
         }
         meetings
     }
@@ -62,45 +83,69 @@ impl Meetings {
     ///
     /// # Errors
     /// When cancelled.
-    pub fn join(
-        mut self,
-        mut joined: Joined,
-        progress: &Progress<'_>,
-    ) -> Result<Joined, Cancelled> {
-        if self.lines.is_empty() {
+    pub fn join(self, mut joined: Joined, progress: &Progress<'_>) -> Result<Joined, Cancelled> {
+        if self.lines.is_empty() && self.touches.is_empty() {
             return Ok(joined);
         }
         let mut start = 0;
-        let ranges = joined.parts.iter().map(|part| {
+        let sheets = joined.parts.iter().map(|part| {
             start += part.n_faces;
-            start - part.n_faces..start
-        });
-        let ranges: Vec<_> = ranges.collect();
-        for (line, parts) in self.lines.iter_mut().zip(&self.parts) {
-            for (strand, &part) in line.strands.iter_mut().zip(parts) {
-                strand.faces = ranges[part].clone();
+            Sheet {
+                faces: start - part.n_faces..start,
+                is_kept: part.is_mirrored(),
             }
-        }
-        let sheets = ranges.iter().zip(&joined.parts).map(|(faces, part)| Sheet {
-            faces: faces.clone(),
-            may_change: !part.is_mirrored(),
         });
         let given = Given {
             mesh: &joined.mesh,
             sheets: &sheets.collect::<Vec<_>>(),
             features: &joined.features,
         };
-        let found = rejoin(&given, &self.lines, progress)?;
+        let found = rejoin(&given, (&self.lines, &self.touches), progress)?;
         let n_shared_lines = self.lines.len();
-        let each = found.is_joined.iter().zip(&self.are_done);
-        let n_joined = each.filter(|(joined, done)| **joined && **done).count();
+        let n_joined = found.joined.iter().flatten().count();
         joined.rejoined = Some(Rejoined {
             n_shared_lines,
             n_joined,
             n_left: n_shared_lines - n_joined,
         });
+        joined.met = self.met(&found);
         joined.rename(found);
         Ok(joined)
+    }
+
+    /// What of a result lies where faces stay.
+    fn met(&self, found: &rejoin::Rejoined) -> Met {
+        let mut met = Met::default();
+        let [lines, touches] = &self.staying;
+        for ((line, keys), along) in self.lines.iter().zip(lines).zip(&found.joined) {
+            let Some(along) = along.as_ref().filter(|_| !keys.is_empty()) else {
+                continue;
+            };
+            let posts = line.posts(along.len());
+            let next = posts
+                .iter()
+                .cycle()
+                .skip(1)
+                .zip(keys.iter().cycle().skip(1));
+            let n_sides = keys.len() - usize::from(!line.is_closed);
+            for (i, ((&at, &key), (&to, &other))) in posts.iter().zip(keys).zip(next).enumerate() {
+                met.vertices.insert(key, along[at]);
+                if i == n_sides {
+                    continue;
+                }
+                let to = if to > at { to } else { along.len() };
+                let mut between = along[at + 1..to].to_vec();
+                met.between.insert([key, other], between.clone());
+                between.reverse();
+                met.between.insert([other, key], between);
+            }
+        }
+        for (keys, vertex) in touches.iter().zip(&found.touched) {
+            let both = keys.iter().zip(*vertex);
+            met.vertices
+                .extend(both.map(|(&key, vertex)| (key, vertex)));
+        }
+        met
     }
 }
 
@@ -113,8 +158,13 @@ impl Joined {
             if a == b { a } else { (a + b).normalize_or(a) }
         };
         self.sphere = found.from.iter().map(middle).collect();
-        for (part, &n) in self.parts.iter_mut().zip(&found.n_faces) {
+        let counts = found.n_faces.iter().zip(&found.is_changed);
+        for (part, (&n, &is_changed)) in self.parts.iter_mut().zip(counts) {
             part.n_faces = n;
+            if is_changed && part.is_mirrored() {
+                let reason = "it got other faces where sheets meet".to_owned();
+                part.mirrored = Some(Mirrored::Refused { reason });
+            }
         }
         self.features = found.features;
         self.mesh = found.mesh;
@@ -125,6 +175,13 @@ impl PartReport {
     /// Whether it would not be symmetric with other faces.
     fn is_mirrored(&self) -> bool {
         matches!(self.mirrored, Some(Mirrored::Used | Mirrored::Image { .. }))
+    }
+}
+
+impl Strand {
+    /// What its sheet calls the vertices where the line begins and ends.
+    fn ends(&self) -> [usize; 2] {
+        [self.vertices.first(), self.vertices.last()].map(|v| v.map_or(0, |v| v.index()))
     }
 }
 
@@ -168,8 +225,10 @@ pub fn laid(marked: &[[VertexId; 2]], parts: &Parts) -> Vec<[VertexId; 2]> {
 
 /// The triangles that are remeshed, with one vertex where sheets meet, but where an edge of theirs
 /// was cut in the middle.
-pub fn whole(prepared: &Prepared, (mesh, shared): (&PolygonMesh, &[SharedLine])) -> PolygonMesh {
-    let vertices = shared.iter().flat_map(|line| &line.vertices);
+pub fn whole(prepared: &Prepared, (mesh, parts): (&PolygonMesh, &Parts)) -> PolygonMesh {
+    let lines = parts.shared.iter().chain(&parts.touching);
+    let vertices = lines.flat_map(|line| &line.vertices);
+    let vertices = vertices.chain(parts.points.iter().map(|point| &point.vertex));
     let points: Vec<_> = vertices.map(|&v| mesh.position(v)).collect();
     let mut first: HashMap<_, Option<u32>> = HashMap::new();
     first.extend(

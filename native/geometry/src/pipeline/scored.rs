@@ -116,7 +116,7 @@ impl Judging<'_> {
     fn topology(&self, progress: &Progress<'_>) -> Result<Topology, Cancelled> {
         let came = match self.joined.rejoined {
             Some(_) => topology(
-                &meet::whole(self.prepared, (self.marked.0, &self.parts.shared)),
+                &meet::whole(self.prepared, (self.marked.0, self.parts)),
                 progress,
             )?,
             None => topology_of_triangles(&self.prepared.mesh),

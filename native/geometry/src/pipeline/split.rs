@@ -12,7 +12,7 @@ use super::frame::{Frame, bits};
 use super::kept::{Flaw, Kept, Outcome, Reason};
 use super::stay::some_faces;
 use super::{Error, Input, Settings, diagnosis, small};
-use crate::clean::{Apart, Cleaned, SharedLine};
+use crate::clean::{Apart, Cleaned, SharedLine, SharedPoint};
 use crate::mesh::{FaceId, FaceMap, PolygonMesh, TriangleMesh, VertexId, VertexMap, bounds};
 use crate::progress::{Cancelled, Progress};
 
@@ -30,6 +30,10 @@ pub struct Parts {
     of_surfaces: Vec<usize>,
     /// The lines along which surfaces met.
     pub shared: Vec<SharedLine>,
+    /// Those along which solids touch.
+    pub touching: Vec<SharedLine>,
+    /// The points where surfaces touch.
+    pub points: Vec<SharedPoint>,
 }
 
 /// What becomes of a surface.
@@ -114,6 +118,8 @@ impl Parts {
             part_of: FaceMap::filled(mesh.n_faces(), None),
             of_surfaces: vec![0; n_surfaces],
             shared: apart.shared,
+            touching: apart.touching,
+            points: apart.points,
         };
         for (i, part) in parts.into_iter().enumerate() {
             for &face in &part.faces {

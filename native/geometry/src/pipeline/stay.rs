@@ -1,10 +1,10 @@
 //! Faces of the input that go out as they came, after those that are made.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use glam::DVec3;
 
-use super::frame::Frame;
+use super::frame::{Frame, bits};
 use super::origins::{Origin, Origins};
 use super::{CarriedEdge, Cross, Input, Remeshed, Report};
 use crate::mesh::{FaceId, Id, PolygonMesh, VertexId};
@@ -40,25 +40,64 @@ impl Elements {
 pub struct Staying {
     faces: Vec<FaceId>,
     vertices: Vec<VertexId>,
+    /// What is made of those of its vertices that are made.
+    made: BTreeMap<VertexId, VertexId>,
+    /// What is made between the ends of edges.
+    between: BTreeMap<[VertexId; 2], Vec<VertexId>>,
+}
+
+/// Vertices that were made where faces stay, by the places of these.
+#[derive(Default)]
+pub struct Met {
+    /// What is made of the vertex at a place.
+    pub vertices: HashMap<[u64; 3], VertexId>,
+    /// What is made between two places, from one to the other.
+    pub between: HashMap<[[u64; 3]; 2], Vec<VertexId>>,
 }
 
 impl Staying {
-    pub fn new(mesh: &PolygonMesh, faces: Vec<FaceId>) -> Self {
-        let mut vertices: Vec<VertexId> =
-            faces.iter().flat_map(|&f| mesh.face(f)).copied().collect();
+    /// Faces of a mesh. What was made where they lie takes the places of their vertices.
+    pub fn new(mesh: &PolygonMesh, faces: Vec<FaceId>, met: &Met) -> Self {
+        let corners = faces.iter().flat_map(|&f| mesh.face(f)).copied();
+        let mut vertices: Vec<VertexId> = corners.collect();
         vertices.sort_unstable();
         vertices.dedup();
-        Self { faces, vertices }
+        let (mut made, mut between) = (BTreeMap::new(), BTreeMap::new());
+        if !met.vertices.is_empty() {
+            let place = |v: VertexId| bits(mesh.position(v));
+            let found = |&v: &VertexId| Some((v, *met.vertices.get(&place(v))?));
+            made = vertices.iter().filter_map(found).collect();
+            vertices.retain(|v| !made.contains_key(v));
+            for ends in faces.iter().flat_map(|&face| sides(mesh.face(face))) {
+                if let Some(new) = met.between.get(&ends.map(place)) {
+                    between.insert(ends, new.clone());
+                }
+            }
+        }
+        Self {
+            faces,
+            vertices,
+            made,
+            between,
+        }
     }
 
     pub fn n_faces(&self) -> usize {
         self.faces.len()
     }
 
-    /// The vertex, counted among those that stay, that an input's vertex is.
-    fn name(&self, vertex: VertexId) -> usize {
-        let found = self.vertices.binary_search(&vertex);
-        found.expect("the vertices of all faces are listed")
+    /// What a vertex of the input is called where so many were made.
+    fn name(&self, vertex: VertexId, n_made: usize) -> VertexId {
+        let staying = || {
+            let found = self.vertices.binary_search(&vertex);
+            VertexId::from_index(n_made + found.expect("the vertices of all faces are listed"))
+        };
+        self.made.get(&vertex).copied().unwrap_or_else(staying)
+    }
+
+    /// What is made between the ends of a side.
+    fn between(&self, ends: [VertexId; 2]) -> &[VertexId] {
+        self.between.get(&ends).map_or(&[], Vec::as_slice)
     }
 
     /// Puts the faces after those that are made, with all that lies on them: positions bit for bit.
@@ -66,54 +105,85 @@ impl Staying {
         if self.faces.is_empty() {
             return;
         }
-        let first = made.mesh.n_vertices();
-        let named = |v: VertexId| VertexId::from_index(first + self.name(v));
-        made.mesh = self.joined(input.mesh, &made.mesh, named);
+        let n_made = made.mesh.n_vertices();
+        made.mesh = self.joined(input.mesh, &made.mesh);
         made.sphere.resize(made.mesh.n_vertices(), DVec3::ZERO);
         if let (Some(all), Some(of_faces)) = (&mut made.materials, input.materials) {
             all.extend(self.faces.iter().map(|face| of_faces[face.index()]));
         }
         if let Some(origins) = &mut made.origins {
-            let [of_vertices, of_corners] = self.corners(input.mesh);
+            let (of_vertices, of_corners) = self.corners(input.mesh, &made.mesh);
             origins
                 .vertices
                 .extend(of_vertices.into_iter().map(Origin::of));
             for set in &mut origins.corners {
-                set.extend(of_corners.iter().copied().map(Origin::of));
+                set.extend(of_corners.iter().copied());
             }
             origins.faces.extend_from_slice(&self.faces);
         }
-        let carried = self.carried(input).into_iter().map(|edge| CarriedEdge {
-            ends: edge.ends.map(named),
-            ..edge
+        let carried = self.carried(input).into_iter().flat_map(|edge| {
+            let [a, b] = edge.ends;
+            let along = [
+                &[self.name(a, n_made)],
+                self.between([a, b]),
+                &[self.name(b, n_made)],
+            ];
+            let along = along.concat();
+            let pieces = along.windows(2).map(|w| CarriedEdge {
+                ends: [w[0], w[1]],
+                ..edge
+            });
+            pieces.collect::<Vec<_>>()
         });
         made.carried.extend(carried);
     }
 
-    /// A corner of the input at each vertex, and that of each corner.
-    fn corners(&self, mesh: &PolygonMesh) -> [Vec<u32>; 2] {
-        let starts = mesh.starts();
-        let of_faces = self.faces.iter();
-        let corners = of_faces.flat_map(|f| starts[f.index()]..starts[f.index() + 1]);
-        let of_corners: Vec<u32> = corners.collect();
+    /// A corner of the input at each vertex that is not made, and where each corner comes from.
+    fn corners(&self, mesh: &PolygonMesh, out: &PolygonMesh) -> (Vec<u32>, Vec<Origin>) {
         let mut of_vertices = vec![0; self.vertices.len()];
-        for &corner in of_corners.iter().rev() {
-            of_vertices[self.name(mesh.corners()[corner as usize])] = corner;
+        let mut of_corners = Vec::new();
+        for &face in &self.faces {
+            let corners = mesh.face(face);
+            let first = mesh.starts()[face.index()];
+            for (i, ends) in sides(corners).enumerate() {
+                let [own, next] = [i, (i + 1) % corners.len()].map(|i| first + i as u32);
+                if let Ok(at) = self.vertices.binary_search(&ends[0]) {
+                    of_vertices[at] = own;
+                }
+                of_corners.push(Origin::of(own));
+                let [a, b] = ends.map(|v| mesh.position(v));
+                let between = self.between(ends).iter().map(|&v| {
+                    let share = out.position(v).distance(a) / a.distance(b);
+                    let share = if share.is_finite() {
+                        share.min(1.0)
+                    } else {
+                        0.0
+                    };
+                    Origin {
+                        corners: [own, next, next],
+                        weights: [1.0 - share, share, 0.0],
+                    }
+                });
+                of_corners.extend(between);
+            }
         }
-        [of_vertices, of_corners]
+        (of_vertices, of_corners)
     }
 
-    fn joined(
-        &self,
-        input: &PolygonMesh,
-        made: &PolygonMesh,
-        named: impl Fn(VertexId) -> VertexId,
-    ) -> PolygonMesh {
+    /// The faces after those of a mesh that was made.
+    fn joined(&self, input: &PolygonMesh, made: &PolygonMesh) -> PolygonMesh {
+        let n_made = made.n_vertices();
         let mut positions = made.positions().to_vec();
+        for (&v, name) in &self.made {
+            positions[name.index()] = input.position(v);
+        }
         positions.extend(self.vertices.iter().map(|&v| input.position(v)));
         let (mut starts, mut corners) = (made.starts().to_vec(), made.corners().to_vec());
         for &face in &self.faces {
-            corners.extend(input.face(face).iter().map(|&v| named(v)));
+            for ends in sides(input.face(face)) {
+                corners.push(self.name(ends[0], n_made));
+                corners.extend(self.between(ends));
+            }
             starts.push(corners.len() as u32);
         }
         PolygonMesh::new(positions, starts, corners).expect("faces of a mesh make one")
@@ -154,7 +224,11 @@ impl Staying {
 pub fn some_faces(mesh: &PolygonMesh, is_wanted: impl Fn(FaceId) -> bool) -> PolygonMesh {
     let faces = mesh.face_ids().filter(|&face| is_wanted(face)).collect();
     let nothing = PolygonMesh::new(Vec::new(), vec![0], Vec::new()).expect("nothing is a mesh");
-    let staying = Staying::new(mesh, faces);
-    let named = |v| VertexId::from_index(staying.name(v));
-    staying.joined(mesh, &nothing, named)
+    Staying::new(mesh, faces, &Met::default()).joined(mesh, &nothing)
+}
+
+/// The sides of a face by their ends.
+fn sides(face: &[VertexId]) -> impl Iterator<Item = [VertexId; 2]> {
+    let next = face.iter().cycle().skip(1);
+    face.iter().zip(next).map(|(&a, &b)| [a, b])
 }

@@ -6,19 +6,20 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::{Edge, Given, Line, Strand, sorted};
+use super::corners::Corners;
+use super::{Corner, Edge, Given, Line, Strand, sorted};
 use crate::mesh::{FaceId, Id, PolygonMesh, VertexId, bounds};
 
 /// What a way costs beside its length: so many times its distance from the line. Below, ways cut
 /// corners of the line; above, they go to and fro between vertices that lie a little off it.
 const OFF: f64 = 4.0;
-/// Ends of a way are at most so many mean edges of the sheet from those of the line.
-const SKIP: f64 = 0.5;
-/// Vertices lie on a line that are nearer than so many mean edges of the sheet.
-const REACH: f64 = 1.0;
+/// Ways of edges stay nearer to a line than so many mean edges of the sheet.
+const REACH: f64 = 1.5;
+/// A border belongs to a line that its vertices are nearer to in the mean than so many mean edges.
+const NEAR: f64 = 1.0;
 
 /// Where a sheet runs along a line.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub(super) struct Chain {
     /// Which sheet.
     pub(super) sheet: usize,
@@ -32,233 +33,417 @@ pub(super) struct Chain {
 impl Chain {
     /// Its edges, in order.
     pub(super) fn edges(&self) -> Vec<Edge> {
+        self.sides()
+            .into_iter()
+            .map(|[a, b]| sorted([a, b]))
+            .collect()
+    }
+
+    /// Its edges in order and along it.
+    pub(super) fn sides(&self) -> Vec<Edge> {
         let next = self.vertices.iter().cycle().skip(1);
         let n = self.vertices.len() - usize::from(!self.is_closed);
         let edges = self.vertices.iter().zip(next).take(n);
-        edges.map(|(&a, &b)| sorted([a, b])).collect()
+        edges.map(|(&a, &b)| [a, b]).collect()
     }
 }
 
 /// The edges of all sheets.
 pub(super) struct Sheets<'a> {
     mesh: &'a PolygonMesh,
-    /// By where their faces begin.
-    names: BTreeMap<usize, usize>,
     edges: Vec<Edges>,
 }
 
 /// The edges of a sheet.
 struct Edges {
-    /// Each once, and whether it has one face.
-    ends: Vec<(Edge, bool)>,
+    /// Each once.
+    ends: Vec<Edge>,
+    /// The vertex after each along the border, which goes on from face to face.
+    along_border: BTreeMap<VertexId, VertexId>,
     mean: f64,
 }
 
 impl<'a> Sheets<'a> {
     pub(super) fn new(given: &Given<'a>) -> Self {
         let sheets = given.sheets.iter();
-        let names = sheets.clone().enumerate();
         let edges = sheets.map(|sheet| Edges::new(given.mesh, sheet.faces.clone()));
         Self {
             mesh: given.mesh,
-            names: names.map(|(i, sheet)| (sheet.faces.start, i)).collect(),
             edges: edges.collect(),
         }
     }
 
-    /// The chains of a line's sheets, of those that have one.
-    pub(super) fn chains(&self, line: &Line) -> Vec<Chain> {
-        let mut taken: BTreeSet<VertexId> = BTreeSet::new();
+    /// The mean length of a sheet's edges.
+    pub(super) fn mean(&self, sheet: usize) -> f64 {
+        self.edges[sheet].mean
+    }
+
+    /// The vertices of a sheet, or of its border, that are near a place, and how far they are.
+    pub(super) fn near(
+        &self,
+        sheet: usize,
+        (place, reach): (DVec3, f64),
+        is_border: bool,
+    ) -> Vec<(VertexId, f64)> {
+        let edges = &self.edges[sheet];
+        let mut vertices: Vec<VertexId> = if is_border {
+            edges.along_border.keys().copied().collect()
+        } else {
+            edges.ends.concat()
+        };
+        vertices.sort_unstable();
+        vertices.dedup();
+        let off = |v: VertexId| (v, self.mesh.position(v).distance(place));
+        let all = vertices.into_iter().map(off);
+        all.filter(|&(_, off)| off <= reach).collect()
+    }
+
+    /// How far a place is from the border of a sheet.
+    pub(super) fn off_border(&self, sheet: usize, place: DVec3) -> f64 {
+        let sides = self.edges[sheet].along_border.iter();
+        let off = |(&a, &b): (&VertexId, &VertexId)| {
+            let [a, b] = [a, b].map(|v| self.mesh.position(v));
+            on_segment([a, b], place).distance(place)
+        };
+        sides.map(off).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The chains of a line's sheets, of those that have one. Those over inner edges keep off the
+    /// vertices that are taken, and take theirs.
+    pub(super) fn chains(
+        &self,
+        line: &Line,
+        corners: &Corners,
+        taken: &mut BTreeSet<VertexId>,
+    ) -> Vec<Chain> {
         let mut chains = Vec::new();
         for strand in &line.strands {
-            let sheet = self.names[&strand.faces.start];
-            let near = Near::new((self.mesh, &self.edges[sheet]), (line, strand), &taken);
-            if let Some(vertices) = near.along(line) {
-                // A sheet that meets itself does so with two chains, whose ends may be one.
-                let inner = if line.is_closed {
-                    0..vertices.len()
-                } else {
-                    1..vertices.len() - 1
-                };
-                taken.extend(&vertices[inner]);
-                chains.push(Chain {
-                    sheet,
-                    vertices,
-                    is_closed: line.is_closed,
-                    is_border: strand.is_border,
-                    is_changed: false,
-                });
-            }
+            let sheet = strand.sheet;
+            let ends = strand
+                .ends
+                .map(|name| corners.vertex(Corner { sheet, name }));
+            let vertices = match (line.is_closed, ends) {
+                (true, _) => self.round(line, strand, taken),
+                (false, [Some(first), Some(last)]) if first != last => {
+                    self.between((line, strand), [first, last], taken)
+                }
+                _ => None,
+            };
+            let Some(vertices) = vertices else { continue };
+            let inner = if line.is_closed {
+                0..vertices.len()
+            } else {
+                1..vertices.len() - 1
+            };
+            taken.extend(&vertices[inner]);
+            chains.push(Chain {
+                sheet,
+                vertices,
+                is_closed: line.is_closed,
+                is_border: strand.is_border,
+                is_changed: false,
+            });
         }
         chains
+    }
+
+    /// The chain of an open line between two vertices.
+    fn between(
+        &self,
+        (line, strand): (&Line, &Strand),
+        [first, last]: [VertexId; 2],
+        taken: &BTreeSet<VertexId>,
+    ) -> Option<Vec<VertexId>> {
+        let edges = &self.edges[strand.sheet];
+        if !strand.is_border {
+            return Near::new((self.mesh, edges), line, taken).way(line, [first, last]);
+        }
+        let there = edges.along(first, last)?;
+        let mut back = edges.along(last, first)?;
+        back.reverse();
+        let free = [there, back].into_iter().filter(|way| {
+            let mut inner = way[1..way.len() - 1].iter();
+            inner.all(|v| !taken.contains(v))
+        });
+        self.nearest(free, line, edges.mean)
+    }
+
+    /// The chain of a closed line.
+    fn round(
+        &self,
+        line: &Line,
+        strand: &Strand,
+        taken: &BTreeSet<VertexId>,
+    ) -> Option<Vec<VertexId>> {
+        let edges = &self.edges[strand.sheet];
+        let round = if strand.is_border {
+            let loops = edges.loops().into_iter();
+            let free = loops.filter(|round| round.iter().all(|v| !taken.contains(v)));
+            self.nearest(free, line, edges.mean)?
+        } else {
+            Near::new((self.mesh, edges), line, taken).round(line)?
+        };
+        (round.len() >= 3).then(|| self.along_line(round, line))
+    }
+
+    /// The way whose vertices and middles of edges are nearest to a line in the mean, if they are.
+    fn nearest(
+        &self,
+        ways: impl Iterator<Item = Vec<VertexId>>,
+        line: &Line,
+        mean: f64,
+    ) -> Option<Vec<VertexId>> {
+        let off = |way: &Vec<VertexId>| {
+            let places: Vec<DVec3> = way.iter().map(|&v| self.mesh.position(v)).collect();
+            let middles = places.windows(2).map(|w| w[0].midpoint(w[1]));
+            let all: Vec<DVec3> = places.iter().copied().chain(middles).collect();
+            all.iter().map(|&p| line.distance(p)).sum::<f64>() / all.len() as f64
+        };
+        let with_off = ways.map(|way| (off(&way), way));
+        let best = with_off.min_by(|a, b| a.0.total_cmp(&b.0));
+        best.filter(|(off, _)| *off <= NEAR * mean)
+            .map(|(_, way)| way)
+    }
+
+    /// A closed way that goes with a closed line, and from where this begins.
+    fn along_line(&self, mut round: Vec<VertexId>, line: &Line) -> Vec<VertexId> {
+        let at: Vec<f64> = round
+            .iter()
+            .map(|&v| line.share(self.mesh.position(v)))
+            .collect();
+        let next = at.iter().cycle().skip(1);
+        let steps = at.iter().zip(next).map(|(a, b)| {
+            let step = b - a;
+            step - step.round()
+        });
+        let is_against = steps.sum::<f64>() < 0.0;
+        let from_start = |share: &f64| share.min(1.0 - share);
+        let first = at
+            .iter()
+            .enumerate()
+            .min_by(|a, b| from_start(a.1).total_cmp(&from_start(b.1)))
+            .map_or(0, |(i, _)| i);
+        round.rotate_left(first);
+        if is_against {
+            round[1..].reverse();
+        }
+        round
     }
 }
 
 impl Edges {
     fn new(mesh: &PolygonMesh, faces: Range<usize>) -> Self {
-        let mut edges: Vec<[VertexId; 2]> = Vec::new();
+        let mut sides: Vec<(Edge, Edge)> = Vec::new();
         for face in faces.map(FaceId::from_index) {
             let corners = mesh.face(face);
             let next = corners.iter().cycle().skip(1);
-            let sides = corners.iter().zip(next);
-            edges.extend(sides.map(|(&a, &b)| [a.min(b), a.max(b)]));
+            let along = corners.iter().zip(next).map(|(&a, &b)| [a, b]);
+            sides.extend(along.map(|side| (sorted(side), side)));
         }
-        edges.sort_unstable();
-        let length = |&[a, b]: &[VertexId; 2]| mesh.position(a).distance(mesh.position(b));
-        let mean = edges.iter().map(length).sum::<f64>() / edges.len().max(1) as f64;
-        let runs = edges.chunk_by(|a, b| a == b);
+        sides.sort_unstable();
+        let length = |&([a, b], _): &(Edge, Edge)| mesh.position(a).distance(mesh.position(b));
+        let mean = sides.iter().map(length).sum::<f64>() / sides.len().max(1) as f64;
+        let runs = || sides.chunk_by(|a, b| a.0 == b.0);
+        let border = runs().filter(|run| run.len() == 1);
         Self {
-            ends: runs.map(|run| (run[0], run.len() == 1)).collect(),
+            ends: runs().map(|run| run[0].0).collect(),
+            along_border: border.map(|run| (run[0].1[0], run[0].1[1])).collect(),
             mean,
         }
+    }
+
+    /// The vertices along the border from one to another.
+    fn along(&self, first: VertexId, last: VertexId) -> Option<Vec<VertexId>> {
+        let mut way = vec![first];
+        while way[way.len() - 1] != last {
+            let next = *self.along_border.get(&way[way.len() - 1])?;
+            if next == first {
+                return None;
+            }
+            way.push(next);
+        }
+        Some(way)
+    }
+
+    /// The loops of the border.
+    fn loops(&self) -> Vec<Vec<VertexId>> {
+        let mut seen: BTreeSet<VertexId> = BTreeSet::new();
+        let mut loops = Vec::new();
+        for &first in self.along_border.keys() {
+            let mut round = Vec::new();
+            let mut at = Some(first);
+            while let Some(v) = at.filter(|&v| seen.insert(v)) {
+                round.push(v);
+                at = self.along_border.get(&v).copied();
+            }
+            if at == Some(first) && !round.is_empty() {
+                loops.push(round);
+            }
+        }
+        loops
     }
 }
 
 /// The edges of a sheet near a line.
 struct Near<'a> {
     mesh: &'a PolygonMesh,
-    mean: f64,
+    border: &'a BTreeMap<VertexId, VertexId>,
     neighbours: BTreeMap<VertexId, Vec<VertexId>>,
+    taken: &'a BTreeSet<VertexId>,
 }
 
 impl<'a> Near<'a> {
-    /// The edges near a line but those at some vertices; of a sheet that ends there, those of its
-    /// border.
     fn new(
-        (mesh, edges): (&'a PolygonMesh, &Edges),
-        (line, strand): (&Line, &Strand),
-        taken: &BTreeSet<VertexId>,
+        (mesh, edges): (&'a PolygonMesh, &'a Edges),
+        line: &Line,
+        taken: &'a BTreeSet<VertexId>,
     ) -> Self {
         let [low, high] = bounds(&line.points);
         let reach = DVec3::splat(REACH * edges.mean);
         let [low, high] = [low - reach, high + reach];
         let is_near = |v: &VertexId| {
             let p = mesh.position(*v);
-            p.cmpge(low).all()
-                && p.cmple(high).all()
-                && line.distance(p) <= reach.x
-                && !taken.contains(v)
+            p.cmpge(low).all() && p.cmple(high).all() && line.distance(p) <= reach.x
         };
         let mut neighbours: BTreeMap<VertexId, Vec<VertexId>> = BTreeMap::new();
-        for &(ends, is_border) in &edges.ends {
-            if (is_border || !strand.is_border) && ends.iter().all(is_near) {
-                let [a, b] = ends;
-                neighbours.entry(a).or_default().push(b);
-                neighbours.entry(b).or_default().push(a);
-            }
+        for &[a, b] in edges.ends.iter().filter(|ends| ends.iter().all(is_near)) {
+            neighbours.entry(a).or_default().push(b);
+            neighbours.entry(b).or_default().push(a);
         }
         Self {
             mesh,
-            mean: edges.mean,
+            border: &edges.along_border,
             neighbours,
+            taken,
         }
     }
 
-    /// The vertices along the line, from its start; none where no edges lie along it.
-    fn along(&self, line: &Line) -> Option<Vec<VertexId>> {
-        let chain = if line.is_closed {
-            // The ways to the middle and back.
-            let (there, back) = halves(line);
-            let mut chain = self.way(&there)?;
-            let back = self.way(&back)?;
-            if chain.last() != back.first() || chain.first() != back.last() {
-                return None;
-            }
-            chain.extend(&back[1..back.len() - 1]);
-            chain
-        } else {
-            self.way(line)?
-        };
-        let mut once = chain.clone();
-        once.sort_unstable();
-        once.dedup();
-        let fewest = if line.is_closed { 3 } else { 2 };
-        (once.len() == chain.len() && chain.len() >= fewest).then_some(chain)
+    /// Whether a way may go through a vertex.
+    fn is_free(&self, v: VertexId) -> bool {
+        !self.taken.contains(&v) && !self.border.contains_key(&v)
     }
 
-    /// The vertices near a point, and what it costs to begin or end there.
-    fn near_point(&self, point: DVec3) -> Vec<(VertexId, f64)> {
-        let off = |&v: &VertexId| (v, self.mesh.position(v).distance(point));
-        let vertices = self.neighbours.keys().map(off);
-        let near = vertices.filter(|&(_, off)| off <= SKIP * self.mean);
-        near.map(|(v, off)| (v, OFF * off)).collect()
-    }
-
-    /// The best way between vertices at both ends of an open line.
-    fn way(&self, line: &Line) -> Option<Vec<VertexId>> {
-        let starts = self.near_point(*line.points.first()?);
-        let ends: BTreeMap<_, _> = self.near_point(*line.points.last()?).into_iter().collect();
-        let mut before: BTreeMap<VertexId, (f64, VertexId)> = BTreeMap::new();
-        let starts = starts
-            .into_iter()
-            .map(|(v, cost)| Reverse((Cost(cost), v, v)));
-        let mut heap: BinaryHeap<_> = starts.collect();
+    /// The best way between two vertices.
+    fn way(&self, line: &Line, [first, last]: [VertexId; 2]) -> Option<Vec<VertexId>> {
+        let mut before: BTreeMap<VertexId, VertexId> = BTreeMap::new();
+        let mut heap = BinaryHeap::from([Reverse((Cost(0.0), first, first))]);
         while let Some(Reverse((cost, v, from))) = heap.pop() {
             if before.contains_key(&v) {
                 continue;
             }
-            before.insert(v, (cost.0, from));
+            before.insert(v, from);
+            if v == last {
+                break;
+            }
             for &w in self.neighbours.get(&v).into_iter().flatten() {
+                if w != last && (before.contains_key(&w) || !self.is_free(w)) {
+                    continue;
+                }
                 let [p, q] = [v, w].map(|v| self.mesh.position(v));
                 let off = line.distance(p.midpoint(q)) + line.distance(q);
                 heap.push(Reverse((Cost(cost.0 + p.distance(q) + OFF * off), w, v)));
             }
         }
-        let whole = |(v, cost): (&VertexId, &f64)| Some((Cost(before.get(v)?.0 + cost), *v));
-        let (_, end) = ends.iter().filter_map(whole).min()?;
-        let mut chain = vec![end];
-        loop {
-            let v = *chain.last()?;
-            let from = before.get(&v)?.1;
-            if from == v {
-                break;
-            }
-            chain.push(from);
+        before.get(&last)?;
+        let back = std::iter::successors(Some(last), |v| Some(before[v]).filter(|from| from != v));
+        let mut way: Vec<VertexId> = back.collect();
+        way.reverse();
+        Some(way)
+    }
+
+    /// The best way round a closed line: over its thirds, between the free vertices next to these.
+    fn round(&self, line: &Line) -> Option<Vec<VertexId>> {
+        let n = line.points.len();
+        let starts = [0, n / 3, 2 * n / 3];
+        let posts = starts.map(|i| {
+            let off = |v: &VertexId| self.mesh.position(*v).distance(line.points[i]);
+            let free = self.neighbours.keys().copied().filter(|&v| self.is_free(v));
+            free.min_by(|a, b| off(a).total_cmp(&off(b)))
+        });
+        let mut round: Vec<VertexId> = Vec::new();
+        for (i, &start) in starts.iter().enumerate() {
+            let ends = [posts[i]?, posts[(i + 1) % 3]?];
+            let to = if i == 2 { n } else { starts[i + 1] };
+            let piece = Line {
+                points: (start..=to).map(|k| line.points[k % n]).collect(),
+                is_closed: false,
+                strands: Vec::new(),
+                stays: false,
+            };
+            let way = self.way(&piece, ends)?;
+            round.extend(&way[..way.len() - 1]);
         }
-        chain.reverse();
-        Some(chain)
+        let mut once = round.clone();
+        once.sort_unstable();
+        once.dedup();
+        (once.len() == round.len()).then_some(round)
     }
 }
 
-/// A closed line as two open ones, there and back.
-fn halves(line: &Line) -> (Line, Line) {
-    let middle = line.points.len() / 2;
-    let open = |points: Vec<DVec3>| Line {
-        points,
-        is_closed: false,
-        strands: Vec::new(),
-    };
-    let mut back = line.points[middle..].to_vec();
-    back.extend(line.points.first());
-    (open(line.points[..=middle].to_vec()), open(back))
-}
-
 impl Line {
-    /// The nearest point on the line.
-    pub(super) fn closest(&self, point: DVec3) -> DVec3 {
+    /// Its pieces.
+    pub(super) fn pieces(&self) -> impl Iterator<Item = [DVec3; 2]> {
         let next = self.points.iter().cycle().skip(1);
         let n = self.points.len() - usize::from(!self.is_closed);
-        let pieces = self.points.iter().zip(next).take(n);
-        let on_piece = |(&a, &b): (&DVec3, &DVec3)| {
-            let along = b - a;
-            let share = (point - a).dot(along) / along.length_squared();
-            let share = if share.is_finite() {
-                share.clamp(0.0, 1.0)
-            } else {
-                0.0
-            };
-            a + along * share
-        };
-        let places = pieces.map(on_piece);
+        self.points.iter().zip(next).take(n).map(|(&a, &b)| [a, b])
+    }
+
+    /// The nearest point on the line.
+    pub(super) fn closest(&self, point: DVec3) -> DVec3 {
+        let places = self.pieces().map(|piece| on_segment(piece, point));
         let off = |p: &DVec3| p.distance_squared(point);
         let nearest = places.min_by(|p, q| off(p).total_cmp(&off(q)));
         nearest.unwrap_or(point)
     }
 
     /// How far a point is from the line.
-    fn distance(&self, point: DVec3) -> f64 {
+    pub(super) fn distance(&self, point: DVec3) -> f64 {
         self.closest(point).distance(point)
     }
+
+    /// The share of the line before the place that is nearest to a point.
+    pub(super) fn share(&self, point: DVec3) -> f64 {
+        let mut best = (f64::INFINITY, 0.0);
+        let mut length = 0.0;
+        for [a, b] in self.pieces() {
+            let at = on_segment([a, b], point);
+            if at.distance(point) < best.0 {
+                best = (at.distance(point), length + a.distance(at));
+            }
+            length += a.distance(b);
+        }
+        best.1 / length.max(f64::MIN_POSITIVE)
+    }
+
+    /// The place at a share of the line.
+    pub(super) fn at(&self, share: f64) -> DVec3 {
+        let length: f64 = self.pieces().map(|[a, b]| a.distance(b)).sum();
+        let mut left = share * length;
+        for [a, b] in self.pieces() {
+            let step = a.distance(b);
+            if left <= step && step > 0.0 {
+                return a.lerp(b, (left / step).clamp(0.0, 1.0));
+            }
+            left -= step;
+        }
+        self.points[if self.is_closed {
+            0
+        } else {
+            self.points.len() - 1
+        }]
+    }
+}
+
+/// The point of a segment nearest to another.
+fn on_segment([a, b]: [DVec3; 2], point: DVec3) -> DVec3 {
+    let along = b - a;
+    let share = (point - a).dot(along) / along.length_squared();
+    let share = if share.is_finite() {
+        share.clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    a + along * share
 }
 
 /// A number that is sorted by.

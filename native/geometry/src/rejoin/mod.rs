@@ -1,25 +1,37 @@
 //! Joins sheets that meet along lines: gives them the same vertices there.
 //!
-//! Each sheet was remeshed by itself, with a line of edges along the line where it met others. Those
-//! with equally many edges there are joined, vertex by vertex from the line's start, on the line where
-//! the borders among them are in the middle; an edge of the result then has as many faces as the
-//! input's had. Not done: sheets with other numbers of edges stay apart, and so do those of which a
-//! face would be turned inside out.
+//! Each sheet was remeshed by itself, mostly with a line of edges along the line where it met others.
+//! A sheet that ends there has one on its border in any case; of one that goes on, the edges that are
+//! nearest are taken. Then
+//!
+//! 1. edges that run to and fro across the line get a row of quads on both sides (`pillow`);
+//! 2. counts of edges that differ are brought together by strips of quads (`strips`), a last odd edge
+//!    in each by strips that are chosen for all lines together (`parity`);
+//! 3. what still differs, by an even number, is met by cutting edges in three (`thirds`);
+//! 4. sheets are joined vertex by vertex from the line's start, on the line; an edge of the result
+//!    then has as many faces as the input's had.
+//!
+//! Sheets that touch in a point get one vertex there. Not joined: what a face would lose a corner by.
 
 mod chain;
+mod corners;
+mod joining;
+mod posts;
+mod room;
 mod strips;
 #[cfg(test)]
 mod tests;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use glam::DVec3;
 
-use crate::groups::Groups;
-use crate::mesh::{FaceId, Id, PolygonMesh, VertexId, VertexMap};
+use crate::mesh::{Id, PolygonMesh, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
-use chain::{Chain, Sheets};
+use chain::Sheets;
+use corners::Corners;
+use joining::Joining;
 
 /// A line along which sheets meet.
 #[derive(Clone, PartialEq, Debug)]
@@ -30,15 +42,37 @@ pub struct Line {
     pub is_closed: bool,
     /// What meets there.
     pub strands: Vec<Strand>,
+    /// Whether something else stays there that has a vertex at each of its points: so shall these.
+    pub stays: bool,
 }
 
 /// A sheet at a line.
-#[derive(Clone, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Strand {
-    /// Its faces in the mesh.
-    pub faces: Range<usize>,
+    /// Which sheet.
+    pub sheet: usize,
     /// Whether it ends there.
     pub is_border: bool,
+    /// What the sheet calls its corners where the line begins and ends, if it is open.
+    pub ends: [usize; 2],
+}
+
+/// A point of a sheet at which a line ends or another sheet touches.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub struct Corner {
+    /// Which sheet.
+    pub sheet: usize,
+    /// What the sheet calls it; it may come to the same place twice.
+    pub name: usize,
+}
+
+/// A point where sheets touch.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Touch {
+    /// Where it is.
+    pub place: DVec3,
+    /// What touches there.
+    pub corners: Vec<Corner>,
 }
 
 /// An edge by its ends.
@@ -49,8 +83,8 @@ pub type Edge = [VertexId; 2];
 pub struct Sheet {
     /// Its faces.
     pub faces: Range<usize>,
-    /// Whether it may get other faces.
-    pub may_change: bool,
+    /// Whether it is better that others get other faces.
+    pub is_kept: bool,
 }
 
 /// What is to be joined.
@@ -71,35 +105,43 @@ pub struct Rejoined {
     pub mesh: PolygonMesh,
     /// How many faces each sheet has.
     pub n_faces: Vec<usize>,
+    /// Which sheets got other faces.
+    pub is_changed: Vec<bool>,
     /// What each vertex that came is called now.
     pub name: VertexMap<VertexId>,
     /// The vertices that came in whose middle each vertex lies.
     pub from: VertexMap<[VertexId; 2]>,
     /// The edges on lines.
     pub features: Vec<Edge>,
-    /// Which lines have the same vertices in all their sheets. The others have not, because the
-    /// counts of edges differ or no edges lie there.
-    pub is_joined: Vec<bool>,
+    /// The vertices along each line that have the same ones in all its sheets; none where the counts
+    /// of edges differ or no edges lie there.
+    pub joined: Vec<Option<Vec<VertexId>>>,
+    /// The vertex at each point where sheets touch.
+    pub touched: Vec<Option<VertexId>>,
 }
 
-/// Gives sheets that meet along lines the same vertices there.
+/// Gives sheets that meet along lines, or touch in points, the same vertices there.
 ///
-/// Counts that differ are brought together by strips of quads first. No face loses a corner: where
-/// it would, sheets stay apart. Costs the edges near each line times its points, and for each strip
-/// the quads of its sheet.
+/// No face loses a corner: where it would, sheets stay apart. Costs the edges near each line times its
+/// points, and for each strip the quads of its sheet.
 ///
 /// # Errors
 /// When cancelled.
 pub fn rejoin(
     given: &Given<'_>,
-    lines: &[Line],
+    (lines, touches): (&[Line], &[Touch]),
     progress: &Progress<'_>,
 ) -> Result<Rejoined, Cancelled> {
     let sheets = Sheets::new(given);
-    let chains = lines.iter().map(|line| sheets.chains(line)).collect();
-    let leveled = strips::level(given, chains, progress)?;
+    let corners = Corners::new(&sheets, lines, touches);
+    let mut taken = corners.vertices();
+    let chains = lines
+        .iter()
+        .map(|line| sheets.chains(line, &corners, &mut taken))
+        .collect();
+    let leveled = strips::level(given, (lines, chains), progress)?;
     let mut joining = Joining::new(&leveled.mesh);
-    let mut is_joined = Vec::with_capacity(lines.len());
+    let mut joined = Vec::with_capacity(lines.len());
     for (line, mut chains) in lines.iter().zip(leveled.chains) {
         progress.check()?;
         let are_found = chains.len() == line.strands.len();
@@ -108,153 +150,44 @@ pub fn rejoin(
         let alike = chains
             .chunk_by(|a, b| a.vertices.len() == b.vertices.len())
             .max_by_key(|alike| alike.len());
-        let joins = alike.filter(|alike| alike.len() > 1);
+        let joins = alike.filter(|alike| alike.len() > 1 || line.stays);
+        let joins = joins.filter(|alike| alike[0].vertices.len() >= line.fewest());
         let joins = joins.is_some_and(|alike| joining.join(line, alike));
-        let are_alike = alike.is_some_and(|alike| alike.len() == line.strands.len());
-        is_joined.push(joins && are_found && are_alike);
+        let alike = alike.filter(|alike| alike.len() == line.strands.len());
+        let is_one = joins && are_found;
+        joined.push(
+            alike
+                .filter(|_| is_one)
+                .map(|alike| alike[0].vertices.clone()),
+        );
     }
-    let (mesh, joined) = joining.joined();
+    let mut touched = Vec::with_capacity(touches.len());
+    for touch in touches {
+        let found = touch.corners.iter().filter_map(|&c| corners.vertex(c));
+        let now: Vec<VertexId> = found.map(|v| leveled.name[v]).collect();
+        touched.push(joining.touch(touch.place, &now).then(|| now[0]));
+    }
+    joining.make_room(&leveled.features);
+    let (mesh, named) = joining.joined();
     let mut from = vec![None; mesh.n_vertices()];
-    for (&name, &of) in joined.iter().zip(leveled.from.iter()) {
+    for (&name, &of) in named.iter().zip(leveled.from.iter()) {
         from[name.index()].get_or_insert(of);
     }
-    let features = leveled
-        .features
-        .iter()
-        .map(|ends| sorted(ends.map(|v| joined[v])));
-    let features: BTreeSet<Edge> = features.collect();
+    let features = leveled.features.iter();
+    let features: BTreeSet<Edge> = features
+        .map(|ends| sorted(ends.map(|v| named[v])))
+        .collect();
+    let along = |chain: Vec<VertexId>| chain.into_iter().map(|v| named[v]).collect();
     Ok(Rejoined {
-        mesh,
         n_faces: leveled.n_faces,
-        name: leveled.name.iter().map(|&v| joined[v]).collect(),
+        is_changed: leveled.is_changed,
+        name: leveled.name.iter().map(|&v| named[v]).collect(),
         from: from.into_iter().flatten().collect(),
         features: features.into_iter().collect(),
-        is_joined,
+        joined: joined.into_iter().map(|chain| chain.map(along)).collect(),
+        touched: touched.iter().map(|v| v.map(|v| named[v])).collect(),
+        mesh,
     })
-}
-
-/// Vertices that become one.
-struct Joining<'a> {
-    mesh: &'a PolygonMesh,
-    groups: Groups,
-    /// The faces at all vertices of the group of each first vertex, in order.
-    faces: Vec<Vec<FaceId>>,
-    /// Where the group of each first vertex lies.
-    places: Vec<DVec3>,
-}
-
-impl<'a> Joining<'a> {
-    fn new(mesh: &'a PolygonMesh) -> Self {
-        let mut faces = vec![Vec::new(); mesh.n_vertices()];
-        for face in mesh.face_ids() {
-            for v in mesh.face(face) {
-                faces[v.index()].push(face);
-            }
-        }
-        Self {
-            mesh,
-            groups: Groups::new(mesh.n_vertices()),
-            faces,
-            places: mesh.positions().to_vec(),
-        }
-    }
-
-    /// Joins chains of equally many vertices on a line, unless a face would lose a corner or turn
-    /// inside out.
-    fn join(&mut self, line: &Line, chains: &[Chain]) -> bool {
-        let mut after = self.groups.clone();
-        let mut hit: Vec<usize> = Vec::new();
-        let n = chains[0].vertices.len();
-        for i in 0..n {
-            let first = chains[0].vertices[i].index();
-            for chain in chains {
-                let v = chain.vertices[i].index();
-                hit.push(after.root(v));
-                after.link(first, v);
-            }
-        }
-        hit.sort_unstable();
-        hit.dedup();
-        let mut corners: Vec<(usize, FaceId)> = Vec::new();
-        for &was in &hit {
-            let now = after.root(was);
-            corners.extend(self.faces[was].iter().map(|&face| (now, face)));
-        }
-        corners.sort_unstable();
-        if corners.windows(2).any(|w| w[0] == w[1]) {
-            return false;
-        }
-        let mut places = BTreeMap::new();
-        for i in 0..n {
-            let root = after.root(chains[0].vertices[i].index());
-            places.insert(root, self.goal(line, chains, i));
-        }
-        let mut touched: Vec<FaceId> = corners.iter().map(|&(_, face)| face).collect();
-        touched.sort_unstable();
-        touched.dedup();
-        if touched.iter().any(|&f| self.turns(f, &mut after, &places)) {
-            return false;
-        }
-        self.groups = after;
-        for was in hit {
-            self.faces[was].clear();
-        }
-        for of_one in corners.chunk_by(|a, b| a.0 == b.0) {
-            self.faces[of_one[0].0] = of_one.iter().map(|&(_, face)| face).collect();
-        }
-        for (root, place) in places {
-            self.places[root] = place;
-        }
-        true
-    }
-
-    /// Where some vertices of chains are joined: on the line, in the middle of the sheets that end
-    /// there, or go on, with counts that were not changed.
-    fn goal(&mut self, line: &Line, chains: &[Chain], i: usize) -> DVec3 {
-        let last = chains[0].vertices.len() - 1;
-        match (line.is_closed, i) {
-            (false, 0) => return line.points[0],
-            (false, i) if i == last => return line.points[line.points.len() - 1],
-            _ => {}
-        }
-        let key = |chain: &Chain| (chain.is_changed, !chain.is_border);
-        let best = chains.iter().map(key).min();
-        let counting = chains.iter().filter(|chain| Some(key(chain)) == best);
-        let (mut sum, mut n) = (DVec3::ZERO, 0.0);
-        for chain in counting {
-            sum += self.places[self.groups.root(chain.vertices[i].index())];
-            n += 1.0;
-        }
-        line.closest(sum / n)
-    }
-
-    /// Whether a face gets more corners that turn the wrong way.
-    fn turns(&mut self, face: FaceId, after: &mut Groups, to: &BTreeMap<usize, DVec3>) -> bool {
-        let corners = self.mesh.face(face);
-        let place = |v: &VertexId| self.places[self.groups.root(v.index())];
-        let before: Vec<DVec3> = corners.iter().map(place).collect();
-        let moved = corners.iter().zip(&before);
-        let moved = moved.map(|(v, &p)| to.get(&after.root(v.index())).copied().unwrap_or(p));
-        let moved: Vec<DVec3> = moved.collect();
-        let normal = area(&before);
-        n_turned(&moved, normal) > n_turned(&before, normal)
-    }
-
-    /// The mesh with its vertices joined, and what they are called.
-    fn joined(mut self) -> (PolygonMesh, VertexMap<VertexId>) {
-        let roots: Vec<usize> = (0..self.places.len())
-            .map(|v| self.groups.root(v))
-            .collect();
-        let (group, n) = self.groups.numbered();
-        let mut positions = vec![DVec3::ZERO; n];
-        for (&group, root) in group.iter().zip(roots) {
-            positions[group as usize] = self.places[root];
-        }
-        let name = VertexMap::from_vec(group.into_iter().map(VertexId).collect());
-        let corners = self.mesh.corners().iter().map(|&v| name[v]).collect();
-        let joined = PolygonMesh::new(positions, self.mesh.starts().to_vec(), corners);
-        (joined.expect("no face loses a corner"), name)
-    }
 }
 
 fn sorted([a, b]: Edge) -> Edge {

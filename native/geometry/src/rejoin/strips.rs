@@ -7,13 +7,16 @@
 //! sheet hangs together as before, and no face gets more corners that turn the wrong way.
 
 mod collapse;
+mod parity;
+mod pillow;
+mod thirds;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
 use super::chain::Chain;
-use super::{Edge, Given, Sheet, sorted};
+use super::{Edge, Given, Line, Sheet, sorted};
 use crate::mesh::{FaceId, Id, PolygonMesh, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
 
@@ -33,14 +36,16 @@ pub(super) struct Leveled {
     pub(super) from: VertexMap<[VertexId; 2]>,
     pub(super) features: Vec<Edge>,
     pub(super) n_faces: Vec<usize>,
+    /// Which sheets got other faces.
+    pub(super) is_changed: Vec<bool>,
     /// The chains of each line, with the new names.
     pub(super) chains: Vec<Vec<Chain>>,
 }
 
-/// Brings the counts of chains together.
+/// Brings the counts of chains together, and the chains onto their lines.
 pub(super) fn level(
     given: &Given<'_>,
-    chains: Vec<Vec<Chain>>,
+    (lines, chains): (&[Line], Vec<Vec<Chain>>),
     progress: &Progress<'_>,
 ) -> Result<Leveled, Cancelled> {
     let Given {
@@ -55,18 +60,24 @@ pub(super) fn level(
             .collect(),
         becomes: BTreeMap::new(),
         faces: sheets.iter().map(|sheet| faces(mesh, sheet)).collect(),
-        may_change: sheets.iter().map(|sheet| sheet.may_change).collect(),
+        is_kept: sheets.iter().map(|sheet| sheet.is_kept).collect(),
+        are_quads: Vec::new(),
+        is_changed: vec![false; sheets.len()],
         features: features.iter().map(|&edge| sorted(edge)).collect(),
         chains,
         n_given: mesh.n_faces(),
     };
-    for (i, faces) in leveling.faces.iter().enumerate() {
-        leveling.may_change[i] &= faces.iter().all(|face| face.len() == 4);
-    }
+    let faces = leveling.faces.iter();
+    leveling.are_quads = faces
+        .map(|faces| faces.iter().all(|face| face.len() == 4))
+        .collect();
+    leveling.pillow(lines, progress)?;
     for line in 0..leveling.chains.len() {
         progress.check()?;
         while leveling.step(line) {}
     }
+    leveling.make_even(progress)?;
+    leveling.cut_in_thirds(lines, progress)?;
     Ok(leveling.leveled(mesh.n_vertices()))
 }
 
@@ -82,7 +93,11 @@ struct Leveling {
     /// What vertices that are gone have become.
     becomes: BTreeMap<VertexId, VertexId>,
     faces: Vec<Vec<Vec<VertexId>>>,
-    may_change: Vec<bool>,
+    /// Sheets that had better stay.
+    is_kept: Vec<bool>,
+    /// Sheets that are made of quads alone: the others have no strips.
+    are_quads: Vec<bool>,
+    is_changed: Vec<bool>,
     features: BTreeSet<Edge>,
     chains: Vec<Vec<Chain>>,
     /// How many faces there were.
@@ -110,7 +125,8 @@ impl Leveling {
         let most = lengths.max().unwrap_or(0);
         let mut strips = Vec::new();
         for chain in &self.chains[line] {
-            if !self.may_change[chain.sheet] || least == most {
+            let may_change = self.are_quads[chain.sheet] && !self.is_kept[chain.sheet];
+            if !may_change || least == most {
                 continue;
             }
             let sides = self.sides(chain.sheet);
@@ -249,14 +265,12 @@ impl Leveling {
 
     /// Cuts each rung of a strip in the middle.
     fn double(&mut self, strip: &Strip) {
+        self.is_changed[strip.sheet] = true;
         let mut middles: BTreeMap<Edge, VertexId> = BTreeMap::new();
         for &rung in &strip.rungs {
             let [a, b] = rung;
-            let middle = VertexId::from_index(self.places.len());
-            self.places
-                .push(self.places[a.index()].midpoint(self.places[b.index()]));
-            self.from
-                .push([self.from[a.index()][0], self.from[b.index()][0]]);
+            let place = self.place(a).midpoint(self.place(b));
+            let middle = self.add(place, rung);
             if self.features.remove(&rung) {
                 self.features.extend([[a, middle], [b, middle]]);
             }
@@ -272,16 +286,36 @@ impl Leveling {
                 self.faces[strip.sheet].push(vec![m, b, c, n]);
             }
         }
-        for chain in self.chains.iter_mut().flatten() {
-            let edges = chain.edges();
+        self.lengthen(strip.sheet, |edge| {
+            middles.get(&sorted(edge)).copied().into_iter().collect()
+        });
+    }
+
+    fn place(&self, v: VertexId) -> DVec3 {
+        self.places[v.index()]
+    }
+
+    /// A new vertex between two.
+    fn add(&mut self, place: DVec3, [a, b]: Edge) -> VertexId {
+        self.places.push(place);
+        self.from
+            .push([self.from[a.index()][0], self.from[b.index()][0]]);
+        VertexId::from_index(self.places.len() - 1)
+    }
+
+    /// Puts vertices between the ends of edges of a sheet's chains.
+    fn lengthen(&mut self, sheet: usize, between: impl Fn(Edge) -> Vec<VertexId>) {
+        let chains = self.chains.iter_mut().flatten();
+        for chain in chains.filter(|chain| chain.sheet == sheet) {
+            let sides = chain.sides();
             let vertices = chain.vertices.iter().enumerate();
             let longer = vertices.flat_map(|(i, &v)| {
-                let middle = edges.get(i).and_then(|edge| middles.get(edge)).copied();
-                [Some(v), middle.filter(|_| chain.sheet == strip.sheet)]
+                let after = sides.get(i).map(|&side| between(side));
+                std::iter::once(v).chain(after.unwrap_or_default())
             });
-            let n_before = chain.vertices.len();
-            chain.vertices = longer.flatten().collect();
-            chain.is_changed |= chain.vertices.len() != n_before;
+            let longer: Vec<VertexId> = longer.collect();
+            chain.is_changed |= chain.vertices.len() != longer.len();
+            chain.vertices = longer;
         }
     }
 
@@ -326,6 +360,7 @@ impl Leveling {
             from: VertexMap::from_vec(from),
             features: self.features.iter().map(|edge| edge.map(named)).collect(),
             n_faces: self.faces.iter().map(Vec::len).collect(),
+            is_changed: self.is_changed,
             chains,
         }
     }

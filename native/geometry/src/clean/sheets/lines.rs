@@ -26,6 +26,13 @@ impl Line {
     pub(super) fn is_free(&self, page: usize) -> bool {
         self.partner[page].is_none()
     }
+
+    /// Whether each page goes on into the same other one all along.
+    fn goes_on_alike(&self, twins: &Twins) -> bool {
+        let mut edges = self.edges.iter();
+        let is_alike = edges.all(|edge| edge.partners(twins) == self.partner);
+        is_alike && self.partner.iter().all(Option::is_some)
+    }
 }
 
 /// An edge of a line.
@@ -34,6 +41,14 @@ pub(in super::super) struct LineEdge {
     pub(in super::super) ends: [VertexId; 2],
     /// Its side in each page, in the order of the pages.
     pub(in super::super) pages: Vec<HalfedgeId>,
+}
+
+impl LineEdge {
+    /// The page that each page goes on into.
+    fn partners(&self, twins: &Twins) -> Vec<Option<usize>> {
+        let page = |h: HalfedgeId| self.pages.iter().position(|&side| side == h);
+        self.pages.iter().map(|&h| page(twins.of(h)?)).collect()
+    }
 }
 
 /// Where a line goes on at an end of an edge.
@@ -90,6 +105,28 @@ pub(super) fn chained(
             lines.push(chain.walk(edge, [from, to]));
         }
     }
+    lines
+}
+
+/// The lines of edges at which solids touch, whose pages are paired already.
+pub(super) fn touching(
+    triangulated: &Triangulated,
+    twins: &Twins,
+    pairs: &[Vec<[HalfedgeId; 2]>],
+) -> Vec<Line> {
+    let mut apart = twins.clone();
+    pairs.iter().flatten().for_each(|&pair| apart.part(pair));
+    let run = |pairs: &Vec<[HalfedgeId; 2]>| {
+        let mut run = pairs.concat();
+        run.sort_unstable();
+        run
+    };
+    let shared: Vec<Vec<HalfedgeId>> = pairs.iter().map(run).collect();
+    let mut lines = chained(triangulated, &apart, &shared);
+    for line in &mut lines {
+        line.partner = line.edges[0].partners(twins);
+    }
+    lines.retain(|line| line.goes_on_alike(twins));
     lines
 }
 

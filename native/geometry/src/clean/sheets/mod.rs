@@ -15,6 +15,7 @@
 mod facing;
 mod lines;
 mod middles;
+mod points;
 mod strands;
 #[cfg(test)]
 mod tests;
@@ -32,6 +33,8 @@ use facing::Facing;
 pub(super) use lines::Line;
 use lines::LineEdge;
 pub(super) use middles::split_at_middles;
+pub(super) use points::points;
+pub use points::{Fan, SharedPoint};
 pub use strands::{SharedLine, Strand};
 pub(super) use strands::{Sorted, Turned, count, told};
 
@@ -53,6 +56,8 @@ pub(super) struct Parted {
     pub(super) twins: Twins,
     /// The lines along which sheets meet.
     pub(super) lines: Vec<Line>,
+    /// Those along which solids touch that go nowhere into each other.
+    pub(super) touching: Vec<Line>,
     /// Whether some edge still has more than two faces, paired or not.
     pub(super) is_crowded: bool,
 }
@@ -76,6 +81,7 @@ pub(super) fn part(soup: &Soup, pairing: Pairing) -> Parted {
         return Parted {
             twins,
             lines: Vec::new(),
+            touching: Vec::new(),
             is_crowded,
         };
     }
@@ -89,11 +95,9 @@ pub(super) fn part(soup: &Soup, pairing: Pairing) -> Parted {
             );
         }
     }
-    shared.extend(not_touching(
-        triangulated,
-        (&mut twins, touching),
-        &mut facing,
-    ));
+    let (touching, refused) = touching_or_not(triangulated, (&mut twins, touching), &mut facing);
+    shared.extend(refused);
+    let touching = lines::touching(triangulated, &twins, &touching);
     let mut pages = Pages {
         triangulated,
         lines: lines::chained(triangulated, &twins, &shared),
@@ -105,6 +109,7 @@ pub(super) fn part(soup: &Soup, pairing: Pairing) -> Parted {
     Parted {
         twins: pages.twins,
         lines: pages.lines,
+        touching,
         is_crowded,
     }
 }
@@ -114,13 +119,17 @@ fn is_against(triangulated: &Triangulated, [g, h]: [HalfedgeId; 2]) -> bool {
     triangulated.ends(g)[0] == triangulated.ends(h)[0]
 }
 
-/// Links the faces of solids that touch; the edges where that cannot be: where a solid would have
-/// one side only, or where solids go over into each other at both ends, so that neither end parts.
-fn not_touching(
+/// The pairs of faces at an edge that go on into each other.
+type Pairs = Vec<[HalfedgeId; 2]>;
+
+/// Links the faces of solids that touch. The edges where that can be; and those where it cannot:
+/// where a solid would have one side only, or where solids go over into each other at both ends, so
+/// that neither end parts.
+fn touching_or_not(
     triangulated: &Triangulated,
-    (twins, touching): (&mut Twins, Vec<Vec<[HalfedgeId; 2]>>),
+    (twins, touching): (&mut Twins, Vec<Pairs>),
     facing: &mut Facing,
-) -> Vec<Vec<HalfedgeId>> {
+) -> (Vec<Pairs>, Vec<Vec<HalfedgeId>>) {
     let mut links = |pair: &[HalfedgeId; 2]| {
         let faces = pair.map(HalfedgeId::face);
         let may = facing.may_link(faces, false);
@@ -129,12 +138,13 @@ fn not_touching(
         }
         may
     };
-    let is_linked = |pairs: &Vec<[HalfedgeId; 2]>| pairs.iter().all(&mut links);
+    let is_linked = |pairs: &Pairs| pairs.iter().all(&mut links);
     let (left, mut refused): (Vec<_>, Vec<_>) = touching.into_iter().partition(is_linked);
     for &pair in refused.iter().flatten() {
         twins.part(pair);
     }
     let mut fans = fans(triangulated, twins);
+    let mut linked = Vec::new();
     for pairs in left {
         let ends = |&[h, _]: &[HalfedgeId; 2]| {
             let [a, b] = [h, h.next()].map(|corner| fans.root(corner.index()));
@@ -147,14 +157,16 @@ fn not_touching(
                 twins.part(pair);
             }
             refused.push(pairs);
+        } else {
+            linked.push(pairs);
         }
     }
-    let run = |pairs: Vec<[HalfedgeId; 2]>| {
+    let run = |pairs: Pairs| {
         let mut run = pairs.concat();
         run.sort_unstable();
         run
     };
-    refused.into_iter().map(run).collect()
+    (linked, refused.into_iter().map(run).collect())
 }
 
 /// The fan of each corner of the triangles.

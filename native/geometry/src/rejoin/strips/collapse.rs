@@ -63,6 +63,7 @@ impl Leveling {
             chain.is_changed |= chain.vertices.len() != n_before;
         }
         self.becomes.extend(goes);
+        self.is_changed[strip.sheet] = true;
         true
     }
 
