@@ -4,19 +4,23 @@ use std::path::PathBuf;
 
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
-use orbflow_geometry::mesh::io::Format;
 use orbflow_geometry::pipeline::{Kind, Mirror, Primitive, Settings, Style};
 use orbflow_geometry::score;
 
+use crate::formats::{FileFormat, READ, WRITTEN};
 use crate::parsers::{degrees, format, kind, mirror, n_faces, primitive, share};
 use crate::parts::OfParts;
 use crate::place::Place;
 
 const AFTER_HELP: &str = "\
-Meshes are read as OBJ, PLY, STL or OFF and written as OBJ, PLY or OFF, by the ending of the file
-name; import others (glTF, FBX, ...) in Blender, or convert them. '-' is standard input or output;
-standard input is recognised by its first bytes unless --input-format is given, standard output is
-OBJ unless --output-format is given. Files are written whole or not at all.
+Meshes are read as OBJ, PLY, STL, OFF, GLB or glTF and written as OBJ, PLY, OFF, GLB or glTF, by the
+ending of the file name; import others (FBX, ...) in Blender, or convert them. '-' is standard input
+or output; standard input is recognised by its first bytes unless --input-format is given, standard
+output is OBJ unless --output-format is given. Files are written whole or not at all.
+
+From GLB or glTF to either, all but the meshes stays as it is, and texture coordinates, colours, bones'
+weights and morph targets are carried over; polygons become triangles there. OBJ keeps texture
+coordinates and the names of materials.
 
 Exit codes: 0 done, 2 wrong usage, 3 this input cannot be done (with --strict: not soundly), 130
 cancelled by Ctrl-C.";
@@ -155,7 +159,7 @@ pub struct Embed {
     pub sphere: Option<Place>,
     /// The format of the sphere, whatever the name ends in
     #[arg(long, value_name = "FORMAT", value_parser = format(WRITTEN))]
-    pub output_format: Option<Format>,
+    pub output_format: Option<FileFormat>,
 }
 
 #[derive(Args, Debug)]
@@ -177,7 +181,7 @@ pub struct Score {
     pub output: Place,
     /// The format of both, whatever the names end in
     #[arg(long, value_name = "FORMAT", value_parser = format(READ))]
-    pub input_format: Option<Format>,
+    pub input_format: Option<FileFormat>,
     /// Write the figures as JSON instead of printing them
     #[arg(long, value_name = "R.json")]
     pub report: Option<Place>,
@@ -191,7 +195,7 @@ pub struct In {
     pub input: Place,
     /// The format of IN, whatever its name ends in
     #[arg(long, value_name = "FORMAT", value_parser = format(READ))]
-    pub input_format: Option<Format>,
+    pub input_format: Option<FileFormat>,
 }
 
 /// The mesh that comes in and the one that goes out.
@@ -204,7 +208,7 @@ pub struct InAndOut {
     pub output: Place,
     /// The format of what is written, whatever the name ends in
     #[arg(long, value_name = "FORMAT", value_parser = format(WRITTEN))]
-    pub output_format: Option<Format>,
+    pub output_format: Option<FileFormat>,
 }
 
 /// How the embedding is run.
@@ -247,19 +251,6 @@ pub enum Predictor {
     Network,
 }
 
-const READ: &[Format] = &[Format::Obj, Format::Ply, Format::Stl, Format::Off];
-const WRITTEN: &[Format] = &[Format::Obj, Format::Ply, Format::Off];
-
-/// The format that a mesh is written in.
-pub fn output_format(place: &Place, wanted: Option<Format>) -> Option<Format> {
-    let written = |format: &Format| WRITTEN.contains(format);
-    match place.path() {
-        _ if wanted.is_some() => wanted,
-        Some(path) => Format::from_path(path).filter(written),
-        None => Some(Format::Obj),
-    }
-}
-
 impl Wanted {
     /// What the core is asked for.
     pub fn settings(&self, work: Work, files: &Rebuilt) -> Settings {
@@ -288,7 +279,7 @@ impl Wanted {
 
 impl Rebuilt {
     /// Where meshes go, where the report goes, and in which format meshes are asked for.
-    fn outputs(&self) -> ([Option<&Place>; 2], Option<&Place>, Option<Format>) {
+    fn outputs(&self) -> ([Option<&Place>; 2], Option<&Place>, Option<FileFormat>) {
         let meshes = [Some(&self.files.output), self.sphere.as_ref()];
         (meshes, self.report.as_ref(), self.files.output_format)
     }
@@ -332,10 +323,10 @@ impl Arguments {
             Command::Evaluate(a) => ([None, None], Some(&a.report), None),
         };
         for mesh in meshes.into_iter().flatten() {
-            if output_format(mesh, wanted).is_none() {
+            if FileFormat::of_output(mesh, wanted).is_none() {
                 return Err(wrong(format!(
-                    "cannot tell the format of {mesh}: its name must end in .obj, .ply or .off, or \
-                     --output-format be given"
+                    "cannot tell the format of {mesh}: its name must end in .obj, .ply, .off, .glb \
+                     or .gltf, or --output-format be given"
                 )));
             }
         }

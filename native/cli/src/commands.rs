@@ -1,18 +1,19 @@
 //! Each command: read, run the core's verb, write.
 
 use orbflow_geometry::embed::OffsetPredictor;
-use orbflow_geometry::mesh::io::{Format, MeshFile};
 use orbflow_geometry::pipeline::{self, Input, Remeshed, Settings};
 use orbflow_geometry::progress::{CancelToken, Cancelled};
 use orbflow_geometry::{clean, score};
 use serde_json::Value;
 
 use crate::arguments::{
-    Command, Decimate, Embed, InAndOut, Predict, Rebuilt, Remesh, Score, Wanted, output_format,
+    Command, Decimate, Embed, InAndOut, Predict, Rebuilt, Remesh, Score, Wanted,
 };
 use crate::bar::with_bar;
 use crate::error::Error;
-use crate::inputs::{numbers, read};
+use crate::formats::FileFormat;
+use crate::given::{Carried, Given, Remade};
+use crate::inputs::{numbers, read, read_silently};
 use crate::interrupt::Interrupt;
 use crate::outputs::Outputs;
 use crate::parts;
@@ -92,7 +93,9 @@ fn beyond_repair(place: &Place, report: &pipeline::Report) -> Option<Error> {
 struct Rebuilding<'a> {
     files: &'a Rebuilt,
     token: &'a CancelToken,
-    file: MeshFile,
+    given: Given,
+    /// What of it goes onto the result.
+    carried: Carried,
     /// How much denser quads are wanted at every vertex, where a file says it.
     density: Option<Vec<f64>>,
     outputs: Outputs,
@@ -105,8 +108,13 @@ impl<'a> Rebuilding<'a> {
         (files, wanted): (&'a Rebuilt, &Wanted),
         interrupt: &'a Interrupt,
     ) -> Result<Self, Error> {
-        let InAndOut { input, output, .. } = &files.files;
-        let file = read(&input.input, input.input_format)?;
+        let InAndOut {
+            input,
+            output,
+            output_format,
+        } = &files.files;
+        let given = read(&input.input, input.input_format)?;
+        let carried = given.carried(format(output, *output_format), wanted.parts.weld.0);
         let density = wanted.density.as_deref().map(numbers).transpose()?;
         let token = interrupt.start_work();
         let places = [Some(output), files.report.as_ref(), files.sphere.as_ref()];
@@ -114,7 +122,8 @@ impl<'a> Rebuilding<'a> {
         Ok(Self {
             files,
             token,
-            file,
+            given,
+            carried,
             density,
             outputs,
         })
@@ -128,9 +137,10 @@ impl<'a> Rebuilding<'a> {
         let files = self.files;
         let place = &files.files.input.input;
         let input = Input {
-            materials: materials(&self.file),
+            materials: self.given.materials(),
             density: self.density.as_deref(),
-            ..Input::new(&self.file.mesh)
+            cuts: self.carried.cuts(),
+            ..Input::new(&self.given.file.mesh)
         };
         let remeshed = with_bar(self.token, |progress| {
             pipeline::remesh(input, settings, predictor, progress)
@@ -158,13 +168,14 @@ impl<'a> Rebuilding<'a> {
             output_format,
             ..
         } = &self.files.files;
-        let mut result = MeshFile {
+        let made = Remade {
             mesh: remeshed.mesh,
-            materials: remeshed.materials.unwrap_or_default(),
-            material_names: self.file.material_names,
+            materials: remeshed.materials,
+            origins: remeshed.origins,
         };
         let outputs = &mut self.outputs;
-        outputs.write_mesh(output, &result, format(output, *output_format))?;
+        let place = (output, format(output, *output_format));
+        let mut result = self.given.write(made, &self.carried, place, outputs)?;
         if let Some(sphere) = &self.files.sphere {
             result.mesh = result.mesh.with_positions(remeshed.sphere);
             outputs.write_mesh(sphere, &result, format(sphere, *output_format))?;
@@ -193,7 +204,7 @@ fn embed(arguments: &Embed, interrupt: &Interrupt) -> Result<(), Error> {
     } = arguments;
     let place = &input.input;
     let predictor = run.build()?;
-    let file = read(place, input.input_format)?;
+    let file = read_silently(place, input.input_format)?.file;
     let token = interrupt.start_work();
     let mut outputs = Outputs::new([Some(report), sphere.as_ref()].into_iter().flatten())?;
     let embedded = with_bar(token, |progress| {
@@ -213,34 +224,33 @@ fn embed(arguments: &Embed, interrupt: &Interrupt) -> Result<(), Error> {
 fn decimate(arguments: &Decimate, interrupt: &Interrupt) -> Result<(), Error> {
     let Decimate { files, faces } = arguments;
     let place = &files.input.input;
-    let file = read(place, files.input.input_format)?;
+    let given = read(place, files.input.input_format)?;
+    let output = (&files.output, format(&files.output, files.output_format));
+    let carried = given.carried(output.1, Some(clean::WELD));
     let token = interrupt.start_work();
     let mut outputs = Outputs::new([&files.output])?;
     let input = Input {
-        materials: materials(&file),
-        ..Input::new(&file.mesh)
+        materials: given.materials(),
+        cuts: carried.cuts(),
+        ..Input::new(&given.file.mesh)
     };
     let decimated = with_bar(token, |progress| {
         pipeline::decimate(input, *faces, progress)
     });
     let decimated = decimated.map_err(|cause| Error::pipeline(place, cause))?;
     tell(place, &decimated.clean);
-    let result = MeshFile {
+    let made = Remade {
         mesh: decimated.mesh,
-        materials: decimated.materials.unwrap_or_default(),
-        material_names: file.material_names,
+        materials: decimated.materials,
+        origins: decimated.origins,
     };
-    outputs.write_mesh(
-        &files.output,
-        &result,
-        format(&files.output, files.output_format),
-    )?;
+    given.write(made, &carried, output, &mut outputs)?;
     outputs.publish(token)
 }
 
 fn score(arguments: &Score, interrupt: &Interrupt) -> Result<(), Error> {
-    let input = read(&arguments.input, arguments.input_format)?;
-    let output = read(&arguments.output, arguments.input_format)?;
+    let input = read_silently(&arguments.input, arguments.input_format)?.file;
+    let output = read_silently(&arguments.output, arguments.input_format)?.file;
     let token = interrupt.start_work();
     let place = arguments.report.as_ref().unwrap_or(&Place::Standard);
     let mut outputs = Outputs::new([place])?;
@@ -254,17 +264,13 @@ fn score(arguments: &Score, interrupt: &Interrupt) -> Result<(), Error> {
     })?;
     match arguments.report {
         Some(_) => outputs.write_report(place, &figures)?,
-        None => outputs.write_text(place, &table(&serde_json::to_value(&figures)?))?,
+        None => outputs.write_bytes(place, table(&serde_json::to_value(&figures)?).as_bytes())?,
     }
     outputs.publish(token)
 }
 
-fn materials(file: &MeshFile) -> Option<&[i32]> {
-    Some(file.materials.as_slice()).filter(|materials| !materials.is_empty())
-}
-
-fn format(place: &Place, wanted: Option<Format>) -> Format {
-    output_format(place, wanted).expect("the arguments were checked")
+fn format(place: &Place, wanted: Option<FileFormat>) -> FileFormat {
+    FileFormat::of_output(place, wanted).expect("the arguments were checked")
 }
 
 /// Says on standard error what had to be mended in the input.

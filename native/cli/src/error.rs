@@ -25,12 +25,24 @@ pub enum Error {
     /// The input is a file of another program.
     #[error(
         "{place}: a {name} file cannot be read; open it in Blender, where the add-on does the same, or \
-         convert it to OBJ or PLY"
+         convert it to GLB, OBJ or PLY"
     )]
     Foreign { place: Place, name: &'static str },
     /// The input's bytes are no mesh.
     #[error("{place}: {cause}")]
     Read { place: Place, cause: ReadError },
+    /// The input's bytes are no scene.
+    #[error("{place}: {cause}")]
+    ReadScene {
+        place: Place,
+        cause: orbflow_gltf::ReadError,
+    },
+    /// The result cannot be put in the scene.
+    #[error("cannot write {place}: {cause}")]
+    Scene {
+        place: Place,
+        cause: orbflow_gltf::WriteError,
+    },
     /// The file of weights cannot be read.
     #[error("cannot read {}: {cause}", path.display())]
     OpenWeights { path: PathBuf, cause: io::Error },

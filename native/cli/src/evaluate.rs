@@ -15,6 +15,7 @@ use orbflow_training::thesis;
 
 use crate::bar::with_bar;
 use crate::error::Error;
+use crate::formats::FileFormat;
 use crate::interrupt::Interrupt;
 use crate::outputs::Outputs;
 use crate::place::Place;
@@ -186,7 +187,7 @@ fn write_meshes(
             let path = folder.join(format!("{}.{what}.obj", asked.file_stem()));
             let place = place(&path);
             let mut outputs = Outputs::new([&place])?;
-            outputs.write_mesh(&place, &mesh.into(), Format::Obj)?;
+            outputs.write_mesh(&place, &mesh.into(), FileFormat::Mesh(Format::Obj))?;
             outputs.publish(token)?;
         }
     }

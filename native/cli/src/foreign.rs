@@ -11,11 +11,6 @@ struct Foreign {
 
 const FOREIGN: &[Foreign] = &[
     Foreign {
-        name: "glTF",
-        endings: &["glb", "gltf", "vrm"],
-        starts: &[b"glTF"],
-    },
-    Foreign {
         name: "FBX",
         endings: &["fbx"],
         starts: &[b"Kaydara FBX Binary", b"; FBX "],
@@ -84,7 +79,6 @@ fn by_bytes(bytes: &[u8]) -> Option<&'static str> {
     let head = &bytes[..bytes.len().min(HEAD)];
     let has = |word: &[u8]| head.windows(word.len()).any(|at| at == word);
     match head.trim_ascii_start().first() {
-        Some(b'{') if has(b"\"asset\"") || has(b"\"meshes\"") => Some("glTF"),
         Some(b'<') if has(b"<COLLADA") => Some("Collada"),
         Some(b'<') if has(b"<X3D") => Some("VRML or X3D"),
         _ => None,
@@ -99,10 +93,7 @@ mod tests {
     fn files_of_other_programs_are_known_by_name_or_bytes() {
         let of = |path: &str, bytes: &[u8]| name(Some(Path::new(path)), bytes);
         for (path, bytes, wanted) in [
-            ("a.GLB", &b""[..], "glTF"),
-            ("a.obj", b"glTF\x02\0\0\0", "glTF"),
-            ("a.json", b" {\n\"asset\": {\"version\": \"2.0\"}}", "glTF"),
-            ("a.fbx", b"; FBX 7.3.0 project file", "FBX"),
+            ("a.FBX", &b"; FBX 7.3.0 project file"[..], "FBX"),
             ("a", b"Kaydara FBX Binary  \0", "FBX"),
             ("a.blend", b"\x28\xb5\x2f\xfd...", "Blender"),
             ("a.blend", b"BLENDER-v403", "Blender"),
@@ -112,6 +103,7 @@ mod tests {
         }
         for (path, bytes) in [
             ("a.obj", &b"v 0 0 0\n"[..]),
+            ("a.glb", b"glTF\x02\0\0\0"),
             ("a.ply", b"ply\n"),
             ("a.stl", b"solid <a>\n"),
             ("a.weird", b"OFF\n"),

@@ -2,17 +2,27 @@
 
 use std::fs;
 use std::io::{self, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use orbflow_geometry::mesh::io::{self as mesh_io, Format, MeshFile};
+use orbflow_geometry::mesh::io as mesh_io;
+use orbflow_gltf::Scene;
 
 use crate::error::Error;
 use crate::foreign;
+use crate::formats::FileFormat;
+use crate::given::Given;
 use crate::place::Place;
 
 /// Reads a mesh in the given format, or in that of the file's name, or in that of its bytes. Files of
-/// other programs are named as such.
-pub fn read(place: &Place, format: Option<Format>) -> Result<MeshFile, Error> {
+/// other programs are named as such. Says what of a scene is not taken over.
+pub fn read(place: &Place, format: Option<FileFormat>) -> Result<Given, Error> {
+    let given = read_silently(place, format)?;
+    given.tell(place);
+    Ok(given)
+}
+
+/// The same where only the shape is of use.
+pub fn read_silently(place: &Place, format: Option<FileFormat>) -> Result<Given, Error> {
     let bytes = bytes(place).map_err(|cause| Error::Open {
         place: place.clone(),
         cause,
@@ -23,13 +33,29 @@ pub fn read(place: &Place, format: Option<Format>) -> Result<MeshFile, Error> {
         let place = place.clone();
         return Err(Error::Foreign { place, name });
     }
-    let format = format
-        .or_else(|| place.path().and_then(Format::from_path))
-        .unwrap_or_else(|| Format::sniff(&bytes));
-    mesh_io::read(&bytes, format).map_err(|cause| Error::Read {
-        place: place.clone(),
-        cause,
-    })
+    match format.unwrap_or_else(|| FileFormat::of_input(place, &bytes)) {
+        FileFormat::Mesh(format) => {
+            let file = mesh_io::read(&bytes, format);
+            file.map(Given::from).map_err(|cause| Error::Read {
+                place: place.clone(),
+                cause,
+            })
+        }
+        FileFormat::Scene(_) => {
+            let folder = place.path().map(folder);
+            let scene = Scene::read(&bytes, folder.as_deref());
+            scene.map(Given::from).map_err(|cause| Error::ReadScene {
+                place: place.clone(),
+                cause,
+            })
+        }
+    }
+}
+
+/// The folder that a file is in.
+fn folder(path: &Path) -> PathBuf {
+    let folder = path.parent().filter(|path| !path.as_os_str().is_empty());
+    folder.unwrap_or(Path::new(".")).to_owned()
 }
 
 /// Numbers from a text file, between white space.

@@ -13,6 +13,8 @@ mod error;
 #[cfg(feature = "train")]
 mod evaluate;
 mod foreign;
+mod formats;
+mod given;
 mod inputs;
 mod interrupt;
 mod outputs;

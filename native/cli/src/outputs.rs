@@ -4,12 +4,13 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use orbflow_geometry::mesh::io::{self as mesh_io, Format, MeshFile, WriteError};
+use orbflow_geometry::mesh::io::{self as mesh_io, MeshFile, WriteError};
 use orbflow_geometry::progress::CancelToken;
 use serde::Serialize;
 use tempfile::NamedTempFile;
 
 use crate::error::Error;
+use crate::formats::FileFormat;
 use crate::place::Place;
 
 /// What a run will leave behind.
@@ -51,24 +52,35 @@ impl Outputs {
         &mut self,
         place: &Place,
         file: &MeshFile,
-        format: Format,
+        format: FileFormat,
     ) -> Result<(), Error> {
-        let out = self.room_for(place);
-        mesh_io::write(file, format, out).map_err(|cause| failed(place, cause))
+        match format {
+            FileFormat::Mesh(format) => {
+                let out = self.room_for(place);
+                mesh_io::write(file, format, out).map_err(|cause| failed(place, cause))
+            }
+            FileFormat::Scene(container) => {
+                let bytes = orbflow_gltf::plain(file, container);
+                let bytes = bytes.map_err(|cause| Error::Scene {
+                    place: place.clone(),
+                    cause,
+                })?;
+                self.write_bytes(place, &bytes)
+            }
+        }
     }
 
     /// Writes a report as JSON to where it waits.
     pub fn write_report(&mut self, place: &Place, report: &impl Serialize) -> Result<(), Error> {
         let mut text = serde_json::to_string_pretty(report)?;
         text.push('\n');
-        self.write_text(place, &text)
+        self.write_bytes(place, text.as_bytes())
     }
 
-    /// Writes words to where they wait.
-    pub fn write_text(&mut self, place: &Place, text: &str) -> Result<(), Error> {
+    /// Writes bytes to where they wait.
+    pub fn write_bytes(&mut self, place: &Place, bytes: &[u8]) -> Result<(), Error> {
         let out = self.room_for(place);
-        out.write_all(text.as_bytes())
-            .map_err(|cause| failed(place, cause))
+        out.write_all(bytes).map_err(|cause| failed(place, cause))
     }
 
     /// Lets everything that waits appear, unless the user asked to stop.

@@ -3,11 +3,11 @@
 use std::ops::RangeInclusive;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser, ValueParser};
-use orbflow_geometry::mesh::io::Format;
 use orbflow_geometry::pipeline::{
     Borders, Handles, Kind, MAX_FACES, MAX_FILL, MAX_WELD, MIN_FACES, Mirror, Primitive, SmallParts,
 };
 
+use crate::formats::FileFormat;
 use crate::parts::Weld;
 
 /// A parser of the number of faces of a result.
@@ -34,8 +34,8 @@ where
 }
 
 /// A parser of some formats by name.
-pub fn format(values: &'static [Format]) -> ValueParser {
-    named(values, Format::name)
+pub fn format(values: &'static [FileFormat]) -> ValueParser {
+    named(values, FileFormat::name)
 }
 
 /// A parser of the kinds of polygons by name.

@@ -43,10 +43,22 @@ fn mesh_file() -> impl Strategy<Value = MeshFile> {
             }
             materials.push(index as i32);
         }
+        let coordinates = faces.iter().flatten().map(|&v| match v % 3 {
+            0 => None,
+            _ => Some([f64::from(v) / 7.0, -1e-9]),
+        });
+        let coordinates: Vec<_> = coordinates.collect();
+        let has_coordinates = coordinates.iter().any(Option::is_some);
         MeshFile {
             mesh: PolygonMesh::from_faces(positions, &faces).expect("indices are in range"),
             materials,
             material_names: used.iter().map(|i| format!("paint {i}")).collect(),
+            coordinates: if has_coordinates {
+                coordinates
+            } else {
+                Vec::new()
+            },
+            material_libraries: used.iter().map(|i| format!("paints {i}.mtl")).collect(),
         }
     })
 }
@@ -100,7 +112,7 @@ proptest! {
     fn any_statements_are_a_mesh_or_an_error(
         words in vec(prop::sample::select(vec![
             "v", "f", "1", "-1", "2", "3", "0", "1/1", "-2//3", "1e9", "nan", "\n", "\n", "\\\n",
-            "usemtl", "#", "OFF", "3 1 0", "solid", "vertex", "endloop", "endsolid", "ply",
+            "usemtl", "vt", "2/2", "1/-1/1", "#", "OFF", "3 1 0", "solid", "vertex", "endloop", "endsolid", "ply",
             "format ascii 1.0", "element vertex 3", "element face 1", "property float x",
             "property list uchar int vertex_indices", "end_header",
         ]), 0..60),

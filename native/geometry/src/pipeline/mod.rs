@@ -78,12 +78,11 @@ pub use warning::Warning;
 
 use glam::DVec3;
 
+use crate::clean;
 use crate::clean::Apart;
 use crate::embed::OffsetPredictor;
 use crate::mesh::{FaceId, PolygonMesh, VertexId};
-use crate::nearest::Bvh;
-use crate::progress::{Cancelled, Progress};
-use crate::{clean, transfer};
+use crate::progress::Progress;
 use clock::Clock;
 use density::Density;
 use each::Common;
@@ -235,16 +234,6 @@ fn taken_apart(
     let moved = apart.moved.take();
     let moved = moved.map(|places| mesh.with_positions(places));
     Ok((apart, moved))
-}
-
-fn transfer_materials(
-    prepared: &Prepared,
-    of_faces: &[i32],
-    new: &PolygonMesh,
-    progress: &Progress<'_>,
-) -> Result<Vec<i32>, Cancelled> {
-    let source = Bvh::build_of_mesh(&prepared.mesh, progress)?;
-    transfer::materials(&source, &prepared.materials(of_faces), new, progress)
 }
 
 /// Parts take the shares 0.02 to 0.9 of the progress, by their faces.

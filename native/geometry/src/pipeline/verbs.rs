@@ -6,17 +6,17 @@ use serde::Serialize;
 use super::clock::{Clock, Step, peak_memory_mb};
 use super::frame::Prepared;
 use super::join::join_embeddings;
+use super::origins::origins;
 use super::part::embed_mesh;
 use super::settings::check_faces;
 use super::split::{Parts, components};
-use super::{
-    Error, Input, Mirror, VERSION, share_of_work, taken_apart, thread_pool, transfer_materials,
-};
+use super::{Error, Input, Mirror, Origins, VERSION, share_of_work, taken_apart, thread_pool};
 use crate::embed::OffsetPredictor;
 use crate::measure::{self, Topology};
 use crate::mesh::PolygonMesh;
+use crate::nearest::Bvh;
 use crate::progress::Progress;
-use crate::{clean, decimate as decimation, embed as embedding};
+use crate::{clean, decimate as decimation, embed as embedding, transfer};
 
 /// A mesh and its map to the sphere, vertex by vertex.
 #[derive(Clone, Debug)]
@@ -128,6 +128,8 @@ pub struct Decimated {
     pub mesh: PolygonMesh,
     /// The material of each triangle, where the input had materials.
     pub materials: Option<Vec<i32>>,
+    /// What of the input every element comes from, where cuts are given.
+    pub origins: Option<Origins>,
     /// What had to be mended in the input.
     pub clean: clean::Report,
     /// How it was reduced.
@@ -151,13 +153,19 @@ pub fn decimate(
     let simplified = decimation::simplify(&prepared.mesh, &settings, &stage)?;
     let small = PolygonMesh::from(&simplified.mesh);
     let stage = progress.part("transfer", 0.9, 1.0);
-    let materials = input
-        .materials
-        .map(|of_faces| transfer_materials(&prepared, of_faces, &small, &stage))
-        .transpose()?;
+    let (mut materials, mut whence) = (None, None);
+    if input.materials.is_some() || input.cuts.is_some() {
+        let tree = Bvh::build_of_mesh(&prepared.mesh, &stage)?;
+        let carried = input.materials.map(|of_faces| {
+            transfer::materials(&tree, &prepared.materials(of_faces), &small, &stage)
+        });
+        materials = carried.transpose()?;
+        whence = origins(&input, (&prepared, &tree), &small, &stage)?;
+    }
     Ok(Decimated {
         mesh: small.with_positions(prepared.frame.leave(small.positions())),
         materials,
+        origins: whence,
         clean: prepared.report,
         report: simplified.report,
     })

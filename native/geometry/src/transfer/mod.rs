@@ -7,6 +7,7 @@
 mod edges;
 mod materials;
 mod places;
+mod seams;
 
 use glam::DVec3;
 
@@ -15,6 +16,7 @@ use crate::nearest::{Bvh, Closest};
 pub use edges::{CarriedEdge, edges};
 pub use materials::materials;
 pub use places::{Places, places};
+pub use seams::Seams;
 
 /// The old surface, asked for the place that belongs to a place of the new one.
 #[derive(Clone, Copy, Debug)]

@@ -10,7 +10,9 @@
 //! line formats of a few statements each, and small parsers here read them. The writers are
 //! loops over vertices and faces; a crate would want copies of both.
 //!
-//! Not read: textures, normals, colours, curves, scenes, several objects as several meshes.
+//! Of OBJ, texture coordinates and the names of materials and their libraries are read and written.
+//! Not read: normals, colours, curves, scenes, several objects as several meshes; `orbflow-gltf` reads
+//! scenes.
 
 mod obj;
 mod off;
@@ -51,6 +53,11 @@ pub struct MeshFile {
     pub materials: Vec<i32>,
     /// The names of the materials, in the order in which faces or statements name them.
     pub material_names: Vec<String>,
+    /// The texture coordinates of each corner, where it has any, from the lower left of the image on;
+    /// empty when there are none.
+    pub coordinates: Vec<Option<[f64; 2]>>,
+    /// The files that say how the materials look, as the file calls them.
+    pub material_libraries: Vec<String>,
 }
 
 /// Why bytes do not make a mesh.
@@ -224,7 +231,7 @@ pub fn read(bytes: &[u8], format: Format) -> Result<MeshFile, ReadError> {
 
 /// Writes a mesh; numbers are the shortest that read back as the same `f64`.
 ///
-/// Material names are kept by OBJ only.
+/// Material names and texture coordinates are kept by OBJ only.
 ///
 /// # Errors
 /// STL is not written; whatever the device says.

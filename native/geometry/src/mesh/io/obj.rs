@@ -4,7 +4,9 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 use std::io::{self, Write};
 
-use super::text::{Growing, Lines, integer, point, shown, words, write_point};
+use super::text::{
+    Growing, Lines, integer, number, point, shown, words, write_number, write_point,
+};
 use super::{MeshFile, Problem, ReadError};
 use crate::mesh::Id;
 
@@ -50,6 +52,11 @@ struct Reader {
     names: Vec<String>,
     by_name: HashMap<String, i32>,
     material: i32,
+    libraries: Vec<String>,
+    /// What `vt` says.
+    coordinates: Vec<[f64; 2]>,
+    /// Which of them each corner names, counted from 0; none after the last corner that names one.
+    named: Vec<Option<usize>>,
 }
 
 impl Reader {
@@ -59,11 +66,17 @@ impl Reader {
             None => Ok(()),
             Some(b"v") => self.growing.add_vertex(point(words)?),
             Some(b"f" | b"fo") => self.face(words, line),
+            Some(b"vt") => self.coordinate(words),
+            Some(b"mtllib") => {
+                let name = String::from_utf8_lossy(statement["mtllib".len()..].trim_ascii());
+                self.libraries.push(name.into_owned());
+                Ok(())
+            }
             Some(b"usemtl") => {
                 self.use_material(statement["usemtl".len()..].trim_ascii());
                 Ok(())
             }
-            // Texture coordinates, normals, groups, lines, curves and what programs add of their own.
+            // Normals, groups, lines, curves and what programs add of their own.
             Some(word) if word.iter().all(|b| b.is_ascii_alphanumeric() || *b == b'_') => Ok(()),
             Some(word) => Err(Problem::Unexpected {
                 expected: "a statement such as 'v' or 'f'",
@@ -79,22 +92,20 @@ impl Reader {
     ) -> Result<(), Problem> {
         let n_vertices = self.growing.positions.len();
         let mut wrong = None;
-        let ahead = &mut self.ahead;
-        let corners = words.map(|word| {
-            corner(word, n_vertices)
-                .inspect(|&index| {
-                    let highest = ahead.last().map_or(n_vertices as i64 - 1, |last| last.1);
-                    if index > highest {
-                        ahead.push((line, index));
-                    }
-                })
-                .and_then(|index| {
-                    u32::try_from(index).map_err(|_| Problem::NoSuchVertex {
-                        vertex: index + 1,
-                        n_vertices,
-                    })
-                })
-                .map_err(|problem| wrong = Some(problem))
+        let (ahead, named) = (&mut self.ahead, &mut self.named);
+        let n_coordinates = self.coordinates.len();
+        let n_corners = self.growing.n_corners();
+        let corners = words.enumerate().map(|(i, word)| {
+            let mut parts = word.split(|&b| b == b'/');
+            let vertex = parts.next().unwrap_or(word);
+            // Faces of broken files name coordinates that are not there: these have none.
+            let coordinate = parts.next().and_then(|part| integer(part).ok());
+            let coordinate = coordinate.and_then(|index| counted(index, n_coordinates));
+            if coordinate.is_some() {
+                named.resize(n_corners + i, None);
+                named.push(coordinate.and_then(|index| usize::try_from(index).ok()));
+            }
+            name(vertex, n_vertices, (line, ahead)).map_err(|problem| wrong = Some(problem))
         });
         let added = self.growing.add_face(corners.map_while(Result::ok));
         match wrong {
@@ -104,6 +115,17 @@ impl Reader {
         if !self.names.is_empty() {
             self.materials.push(self.material);
         }
+        Ok(())
+    }
+
+    fn coordinate<'a>(&mut self, words: impl Iterator<Item = &'a [u8]>) -> Result<(), Problem> {
+        let mut coordinate = [0.0; 2];
+        for (value, word) in coordinate.iter_mut().zip(words) {
+            let read = number(word)?;
+            // What is not finite cannot be mixed.
+            *value = if read.is_finite() { read } else { 0.0 };
+        }
+        self.coordinates.push(coordinate);
         Ok(())
     }
 
@@ -125,7 +147,7 @@ impl Reader {
         index
     }
 
-    fn finish(self) -> Result<MeshFile, ReadError> {
+    fn finish(mut self) -> Result<MeshFile, ReadError> {
         let n_vertices = self.growing.positions.len();
         let missing = self
             .ahead
@@ -138,39 +160,93 @@ impl Reader {
             };
             return Err(ReadError::Line { line, problem });
         }
+        if !self.named.is_empty() {
+            self.named.resize(self.growing.n_corners(), None);
+        }
+        let named = self.named.iter();
+        let coordinates = named.map(|&name| self.coordinates.get(name?).copied());
         Ok(MeshFile {
+            coordinates: coordinates.collect(),
             mesh: self.growing.finish()?,
             materials: self.materials,
             material_names: self.names,
+            material_libraries: self.libraries,
         })
     }
 }
 
-/// The vertex, counted from 0, of a corner `v`, `v/vt`, `v//vn` or `v/vt/vn`; negative numbers
-/// count back from the last vertex.
-fn corner(word: &[u8], n_vertices: usize) -> Result<i64, Problem> {
-    let vertex = word.split(|&b| b == b'/').next().unwrap_or(word);
-    let index = integer(vertex)?;
-    let no_such_vertex = Problem::NoSuchVertex {
-        vertex: index,
-        n_vertices,
-    };
+/// The vertex of a corner `v`, `v/vt`, `v//vn` or `v/vt/vn`, counted from 0; one that is not known
+/// yet is remembered with its line.
+fn name(
+    word: &[u8],
+    n_vertices: usize,
+    (line, ahead): (usize, &mut Vec<(usize, i64)>),
+) -> Result<u32, Problem> {
+    let given = integer(word)?;
+    let no_such_vertex = |vertex| Problem::NoSuchVertex { vertex, n_vertices };
+    let index = counted(given, n_vertices).ok_or_else(|| no_such_vertex(given))?;
+    let highest = ahead.last().map_or(n_vertices as i64 - 1, |last| last.1);
+    if index > highest {
+        ahead.push((line, index));
+    }
+    u32::try_from(index).map_err(|_| no_such_vertex(index + 1))
+}
+
+/// An index counted from 0; negative ones count back from the last of those that are known.
+fn counted(index: i64, n_known: usize) -> Option<i64> {
     match index {
-        0 => Err(no_such_vertex),
-        1.. => Ok(index - 1),
-        _ => Some(n_vertices as i64)
-            .and_then(|n| n.checked_add(index))
-            .filter(|&index| index >= 0)
-            .ok_or(no_such_vertex),
+        0 => None,
+        1.. => Some(index - 1),
+        _ => (n_known as i64)
+            .checked_add(index)
+            .filter(|&index| index >= 0),
+    }
+}
+
+/// The texture coordinates of corners, each once.
+struct Coordinates {
+    each: Vec<[f64; 2]>,
+    /// Of every corner, counted from 1 as in the file.
+    of_corners: Vec<Option<usize>>,
+}
+
+impl Coordinates {
+    fn new(corners: &[Option<[f64; 2]>]) -> Self {
+        let mut known = HashMap::new();
+        let mut each = Vec::new();
+        let of_corner = |coordinate: &Option<[f64; 2]>| {
+            coordinate.map(|coordinate| {
+                *known
+                    .entry(coordinate.map(f64::to_bits))
+                    .or_insert_with(|| {
+                        each.push(coordinate);
+                        each.len()
+                    })
+            })
+        };
+        let of_corners = corners.iter().map(of_corner).collect();
+        Self { each, of_corners }
     }
 }
 
 pub(super) fn write(file: &MeshFile, out: &mut dyn Write) -> io::Result<()> {
+    for library in &file.material_libraries {
+        writeln!(out, "mtllib {library}")?;
+    }
     for &position in file.mesh.positions() {
         out.write_all(b"v ")?;
         write_point(out, position)?;
         out.write_all(b"\n")?;
     }
+    let coordinates = Coordinates::new(&file.coordinates);
+    for [u, v] in &coordinates.each {
+        out.write_all(b"vt ")?;
+        write_number(out, *u)?;
+        out.write_all(b" ")?;
+        write_number(out, *v)?;
+        out.write_all(b"\n")?;
+    }
+    let mut of_corners = coordinates.of_corners.iter();
     let mut last = None;
     for (i, face) in file.mesh.faces().enumerate() {
         let material = file.materials.get(i).copied();
@@ -185,6 +261,9 @@ pub(super) fn write(file: &MeshFile, out: &mut dyn Write) -> io::Result<()> {
         out.write_all(b"f")?;
         for vertex in face {
             write!(out, " {}", vertex.index() + 1)?;
+            if let Some(Some(coordinate)) = of_corners.next() {
+                write!(out, "/{coordinate}")?;
+            }
         }
         out.write_all(b"\n")?;
     }
@@ -234,6 +313,28 @@ mod tests {
             (&again.mesh, &again.materials),
             (&file.mesh, &file.materials)
         );
+    }
+
+    #[test]
+    fn texture_coordinates_and_libraries_come_back() {
+        let faces = "vt 0 0\nvt 0.5 1 0\nvt nan\nf 1/1 2/2 3\nf 1 2/-1 4/9 3/2/1\nf 1 2 3\n";
+        let text = format!("mtllib some paints.mtl\n{SQUARE}{faces}");
+        let file = read(text.as_bytes()).unwrap();
+        let [first, second] = [Some([0.0, 0.0]), Some([0.5, 1.0])];
+        let wanted = [
+            first, second, None, None, first, None, second, None, None, None,
+        ];
+        assert_eq!(file.coordinates, wanted);
+        let mut text = Vec::new();
+        write(&file, &mut text).unwrap();
+        assert_eq!(read(&text).unwrap(), file);
+        let text = String::from_utf8(text).unwrap();
+        assert!(
+            text.starts_with("mtllib some paints.mtl\nv 0 0 0\n"),
+            "{text}"
+        );
+        assert!(text.contains("vt 0.5 1\nf 1/1 2/2 3\n"), "{text}");
+        assert_eq!(read(SQUARE.as_bytes()).unwrap().coordinates, []);
     }
 
     #[test]

@@ -138,6 +138,10 @@ impl Growing {
         Ok(())
     }
 
+    pub(super) fn n_corners(&self) -> usize {
+        self.corners.len()
+    }
+
     pub(super) fn n_faces(&self) -> usize {
         self.ends.len()
     }
