@@ -31,7 +31,9 @@ def more_told(monkeypatch: pytest.MonkeyPatch) -> Any:  # noqa: ANN401
         result = real(task, *others)
         names = ("positions", "loop_start", "corner_vert", "material_index", "carried_edges")
         names += ("carried_from", "origins", "crosses", "report")
-        made = SimpleNamespace(**{name: getattr(result, name) for name in names}, kept_faces=0)
+        made = SimpleNamespace(
+            **{name: getattr(result, name) for name in names}, kept_faces=0, filled_faces=[]
+        )
         made.report = made.report | told.get(task.name, {})
         return made
 
@@ -203,7 +205,7 @@ def test_settings_that_change_nothing_are_grey(open_fixture: Open) -> None:
         return {name for name, row in drawn if not row.active} - {"show_crosses"}
 
     assert grey() == {"fill_size", "seal_size"}
-    settings.borders = "FILL"
+    settings.borders, settings.handles = "FILL", "SEAL"
     assert grey() == set()
     settings.kind = "TRIANGLES"
     assert grey() == {"follow_shape", "adaptivity", "density", "mirror"}
