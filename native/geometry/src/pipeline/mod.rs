@@ -21,6 +21,7 @@ mod each;
 mod error;
 mod even;
 mod fault;
+mod few;
 mod finish;
 mod fixed;
 mod flow;

@@ -91,7 +91,12 @@ impl<'a> PartJob<'a> {
         let mut whole = Whole::new(part, (wanted.settings, wanted.marks), progress)?;
         let filling = std::mem::take(&mut whole.filling);
         let made = if whole.is_open() {
-            let reason = match wanted.too_many_handles(&whole) {
+            if let Some(laid) = wanted.grid(&whole, progress)? {
+                let made = wanted.without_map((&whole, came), laid, Some(Flowed::Grid));
+                return Ok(PartResult { filling, ..made });
+            }
+            let reason = wanted.too_few().or_else(|| wanted.too_many_handles(&whole));
+            let reason = match reason {
                 Some(reason) => Err(reason),
                 None => told(wanted.run((whole.clone(), came), clock, progress))?,
             };
@@ -161,15 +166,25 @@ impl Wanted<'_> {
         progress: &Progress<'_>,
     ) -> Result<PartResult, Error> {
         let laid = self.uncut(whole, clock, progress)?;
+        let flow = (self.settings.primitive() == Primitive::Flow).then(|| Flowed::Refused {
+            reason,
+            instead: Instead::PairedTriangles,
+        });
+        Ok(self.without_map((whole, came), laid, flow))
+    }
+
+    /// Faces that were made without a map.
+    fn without_map(
+        &self,
+        (whole, came): (&Whole, Came),
+        laid: Laid,
+        flow: Option<Flowed>,
+    ) -> PartResult {
         let of_part = match self.mirror.0 {
             Role::Whole => Some("only quads that flow can be".to_owned()),
             Role::Alone(reason) => reason.clone(),
             Role::ImageOf(_) => None,
         };
-        let flow = (self.settings.primitive() == Primitive::Flow).then(|| Flowed::Refused {
-            reason,
-            instead: Instead::PairedTriangles,
-        });
         let report = PartReport {
             n_input_faces: came.n_input_faces,
             n_asked_faces: came.n_asked_faces,
@@ -183,7 +198,7 @@ impl Wanted<'_> {
             sphere: None,
             deform: laid.deformed.report,
         };
-        Ok(PartResult {
+        PartResult {
             mesh: laid.deformed.mesh,
             sphere: laid.deformed.sphere,
             features: laid.deformed.features,
@@ -191,7 +206,7 @@ impl Wanted<'_> {
             filling: Vec::new(),
             area: came.area,
             report,
-        })
+        }
     }
 
     /// Closes the part and makes it its own image, where it is to be.

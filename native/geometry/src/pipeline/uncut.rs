@@ -11,8 +11,9 @@ use super::laid::Laid;
 use super::open::Whole;
 use super::part::Wanted;
 use super::settings::Kind;
-use crate::deform::{Deformed, Target};
-use crate::mesh::{HalfedgeMap, PolygonMesh, TriangleMesh, VertexId};
+use crate::deform::{Deformed, Target, settle};
+use crate::measure::PolygonEdges;
+use crate::mesh::{HalfedgeMap, Id, PolygonMesh, TriangleMesh, VertexId};
 use crate::progress::Progress;
 use crate::{decimate, measure, pair};
 
@@ -20,8 +21,15 @@ use crate::{decimate, measure, pair};
 const N_TRIES: usize = 3;
 /// The share that the count may be off before they are made again.
 const NEAR_COUNT: f64 = 0.01;
+/// Quality up to which quads are mended, and up to which with vertices on edges that are kept.
+const ENOUGH: f64 = 0.5;
+const OPEN: f64 = 0.05;
 /// A handle needs so many faces round it: of fewer none is cut, which costs time and comes to nothing.
-const PER_HANDLE: i64 = 8;
+const PER_HANDLE: i64 = 24;
+/// But so many are always cut.
+const FEW_HANDLES: i64 = 4;
+/// Each cut looks at the whole part: handles times triangles are no more than this.
+const MOST_WORK: i64 = 10_000_000;
 
 /// Faces, and those of their edges that lie on sharp or marked ones.
 struct Faces {
@@ -34,8 +42,15 @@ impl Wanted<'_> {
     pub fn too_many_handles(&self, whole: &Whole) -> Option<String> {
         let n_handles = whole.shape.genus.unwrap_or(0);
         let n_faces = self.n_faces as i64;
-        (PER_HANDLE * n_handles > n_faces)
-            .then(|| format!("{n_handles} handles are too many for {n_faces} faces"))
+        if n_handles > FEW_HANDLES && PER_HANDLE * n_handles > n_faces {
+            return Some(format!(
+                "{n_handles} handles are too many for {n_faces} faces"
+            ));
+        }
+        let n_triangles = whole.mesh.n_faces() as i64;
+        (n_handles > FEW_HANDLES && n_handles * n_triangles > MOST_WORK).then(|| {
+            format!("{n_handles} handles are too many to be cut of {n_triangles} triangles")
+        })
     }
 
     /// Faces of the part's own triangles.
@@ -64,6 +79,14 @@ impl Wanted<'_> {
         }
         let Faces { mesh, kept } = faces;
         let target = Target::new(whole.mesh.clone(), progress)?;
+        let is_border = PolygonEdges::new(&mesh, progress)?.border_vertices(mesh.n_vertices());
+        let mut is_fixed = is_border.clone();
+        for v in kept.iter().flatten() {
+            is_fixed[v.index()] = true;
+        }
+        let mesh = settle(&mesh, (&is_fixed, ENOUGH), &target, progress)?;
+        // What lies on edges that are kept goes off them where nothing else helps.
+        let mesh = settle(&mesh, (&is_border, OPEN), &target, progress)?;
         // Nothing was embedded.
         let sphere = vec![DVec3::ZERO; mesh.n_vertices()];
         let deformed = Deformed::in_space(mesh, sphere, kept, progress)?;
@@ -106,7 +129,7 @@ impl Wanted<'_> {
     }
 
     /// The sharp and marked edges of triangles of a part.
-    fn kept(&self, whole: &Whole, mesh: &TriangleMesh) -> HalfedgeMap<bool> {
+    pub(super) fn kept(&self, whole: &Whole, mesh: &TriangleMesh) -> HalfedgeMap<bool> {
         let sharp = measure::sharp_edges(mesh, self.settings.sharp_angle.to_radians());
         let marked = [self.marks.on(mesh), whole.pieces.on(mesh)];
         let halfedges = mesh.halfedge_ids();

@@ -1,0 +1,65 @@
+//! Open parts that are to get few faces, as hair cards: these are found without a flow.
+//!
+//! A flow costs as much for eight quads as for hundreds, and has no room: it is spent on parts that gain
+//! by it. A part whose triangles pair into a grid of quads becomes a grid of other counts.
+
+use glam::DVec3;
+
+use super::Error;
+use super::laid::Laid;
+use super::open::Whole;
+use super::part::Wanted;
+use super::settings::{Kind, Primitive};
+use crate::deform::{Deformed, Target};
+use crate::mesh::{PolygonMesh, TriangleMesh};
+use crate::pair::{self, Grid};
+use crate::progress::Progress;
+
+/// Of fewer quads open parts are no flow: most attempts fail there.
+const FEWEST: usize = 24;
+/// Up to so many quads grids stay grids; of more a flow follows the shape better.
+const MOST_OF_GRID: usize = 64;
+/// A grid has no more triangles for each quad that is wanted: it would lose what they show.
+const TRIANGLES_PER_QUAD: usize = 16;
+
+impl Wanted<'_> {
+    /// Why an open part is not worth a flow; none where it is.
+    pub fn too_few(&self) -> Option<String> {
+        (self.n_faces < FEWEST && self.settings.primitive() == Primitive::Flow)
+            .then(|| format!("{} quads are too few to flow", self.n_faces))
+    }
+
+    /// The quads of an open part that is a grid already, if it is one. Lines of it that are sharp or
+    /// marked stay lines.
+    ///
+    /// # Errors
+    /// When cancelled.
+    pub fn grid(&self, whole: &Whole, progress: &Progress<'_>) -> Result<Option<Laid>, Error> {
+        let mesh = &whole.mesh;
+        let is_wanted = self.settings.kind == Kind::Quads
+            && self.settings.primitive() == Primitive::Flow
+            && self.n_faces <= MOST_OF_GRID
+            && mesh.n_faces() <= TRIANGLES_PER_QUAD * self.n_faces
+            && (whole.shape.n_borders, whole.shape.genus) == (1, Some(0));
+        if !is_wanted || self.density.on(mesh).is_some() {
+            return Ok(None);
+        }
+        let kept = self.kept(whole, mesh);
+        let pairs = pair::pair_open(mesh, &kept, progress)?;
+        let Some(grid) = Grid::of(&pairs.quads, &pairs.kept) else {
+            return Ok(None);
+        };
+        in_space(grid.remade(self.n_faces), mesh, progress).map(Some)
+    }
+}
+
+fn in_space(
+    quads: PolygonMesh,
+    part: &TriangleMesh,
+    progress: &Progress<'_>,
+) -> Result<Laid, Error> {
+    let target = Target::new(part.clone(), progress)?;
+    let sphere = vec![DVec3::ZERO; quads.n_vertices()];
+    let deformed = Deformed::in_space(quads, sphere, Vec::new(), progress)?;
+    Ok(Laid::new(deformed, None, &target))
+}
