@@ -10,8 +10,9 @@ use super::laid::Laid;
 use super::open::Whole;
 use super::part::Wanted;
 use super::settings::{Kind, Primitive};
+use super::uncut::edges;
 use crate::deform::{Deformed, Target};
-use crate::mesh::{PolygonMesh, TriangleMesh};
+use crate::mesh::{HalfedgeMap, PolygonMesh, TriangleMesh};
 use crate::pair::{self, Grid};
 use crate::progress::Progress;
 
@@ -44,9 +45,14 @@ impl Wanted<'_> {
         if !is_wanted || self.density.on(mesh).is_some() {
             return Ok(None);
         }
-        let kept = self.kept(whole, mesh);
-        let pairs = pair::pair_open(mesh, &kept, progress)?;
-        let Some(grid) = Grid::of(&pairs.quads, &pairs.kept) else {
+        // A sharp diagonal, as of a card that is twisted, is no line.
+        let nothing = HalfedgeMap::filled(3 * mesh.n_faces(), false);
+        let pairs = pair::pair_open(mesh, &nothing, progress)?;
+        if pairs.quads.n_vertices() != mesh.n_vertices() {
+            return Ok(None);
+        }
+        let kept = edges(mesh, &self.kept(whole, mesh));
+        let Some(grid) = Grid::of(&pairs.quads, &kept) else {
             return Ok(None);
         };
         in_space(grid.remade(self.n_faces), mesh, progress).map(Some)
@@ -62,4 +68,51 @@ fn in_space(
     let sphere = vec![DVec3::ZERO; quads.n_vertices()];
     let deformed = Deformed::in_space(quads, sphere, Vec::new(), progress)?;
     Ok(Laid::new(deformed, None, &target))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::embed::Solver;
+    use crate::mesh::PolygonMesh;
+    use crate::pipeline::{Flowed, Input, Settings, remesh};
+
+    use super::*;
+
+    #[test]
+    fn hair_cards_become_strips_of_as_many_quads_as_are_asked_for() {
+        let n_cards = 12;
+        let (mut points, mut faces) = (Vec::new(), Vec::new());
+        for card in 0..n_cards {
+            for i in 0..=10 {
+                let [x, y] = [f64::from(card), 0.3 * f64::from(i)];
+                let width = 0.2 - 0.01 * f64::from(i);
+                points.extend([-width, width].map(|w| DVec3::new(x + w, y, -0.02 * y * y * x)));
+            }
+            let first = 22 * card;
+            for a in (0..10).map(|i| first + 2 * i) {
+                faces.extend([[a, a + 1, a + 3], [a, a + 3, a + 2]]);
+            }
+        }
+        let mesh = PolygonMesh::from_faces(points, &faces).unwrap();
+        let settings = Settings {
+            faces: 8 * n_cards as usize,
+            ..Settings::default()
+        };
+        let quiet = Progress::none();
+        let made = remesh(Input::new(&mesh), &settings, &Solver::default(), &quiet).unwrap();
+        let report = made.report;
+        assert_eq!(report.parts.len(), n_cards as usize);
+        assert!(
+            report
+                .parts
+                .iter()
+                .all(|part| part.flow == Some(Flowed::Grid))
+        );
+        assert_eq!(report.output.n_borders, n_cards as usize);
+        assert!(made.mesh.n_faces().abs_diff(settings.faces) <= 4);
+        assert_eq!(
+            made.mesh.n_vertices(),
+            2 * (made.mesh.n_faces() + n_cards as usize)
+        );
+    }
 }

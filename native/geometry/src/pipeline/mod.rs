@@ -32,6 +32,7 @@ mod handles;
 mod join;
 mod kept;
 mod laid;
+mod mapless;
 mod marks;
 mod meet;
 mod mirror;

@@ -10,6 +10,7 @@ use super::flow::Asked;
 use super::flowed::{Flowed, FlowedPart};
 use super::ground::Ground;
 use super::laid::{Instead, Laid};
+use super::mapless::Came;
 use super::marks::Marks;
 use super::mirror::{Faced, Plane, Role, face};
 use super::open::{Closing, Whole};
@@ -72,15 +73,7 @@ struct Ready<'a> {
     opened: Option<Opened>,
 }
 
-/// What is told of a part however it is made.
-#[derive(Clone, Copy)]
-struct Came {
-    n_input_faces: usize,
-    n_asked_faces: usize,
-    area: f64,
-}
-
-impl<'a> PartJob<'a> {
+impl PartJob<'_> {
     pub fn run(self, clock: &mut Clock, progress: &Progress<'_>) -> Result<PartResult, Error> {
         let Self { part, wanted } = self;
         let came = Came {
@@ -155,58 +148,6 @@ impl Wanted<'_> {
             area: came.area,
             report,
         })
-    }
-
-    /// The same without anything closed or cut.
-    fn run_uncut(
-        &self,
-        (whole, came): (&Whole, Came),
-        reason: String,
-        clock: &mut Clock,
-        progress: &Progress<'_>,
-    ) -> Result<PartResult, Error> {
-        let laid = self.uncut(whole, clock, progress)?;
-        let flow = (self.settings.primitive() == Primitive::Flow).then(|| Flowed::Refused {
-            reason,
-            instead: Instead::PairedTriangles,
-        });
-        Ok(self.without_map((whole, came), laid, flow))
-    }
-
-    /// Faces that were made without a map.
-    fn without_map(
-        &self,
-        (whole, came): (&Whole, Came),
-        laid: Laid,
-        flow: Option<Flowed>,
-    ) -> PartResult {
-        let of_part = match self.mirror.0 {
-            Role::Whole => Some("only quads that flow can be".to_owned()),
-            Role::Alone(reason) => reason.clone(),
-            Role::ImageOf(_) => None,
-        };
-        let report = PartReport {
-            n_input_faces: came.n_input_faces,
-            n_asked_faces: came.n_asked_faces,
-            n_faces: laid.deformed.mesh.n_faces(),
-            reduced: None,
-            decimate: None,
-            opened: whole.told,
-            embedding: embed::Report::none(),
-            flow,
-            mirrored: of_part.map(|reason| Mirrored::Refused { reason }),
-            sphere: None,
-            deform: laid.deformed.report,
-        };
-        PartResult {
-            mesh: laid.deformed.mesh,
-            sphere: laid.deformed.sphere,
-            features: laid.deformed.features,
-            crosses: Vec::new(),
-            filling: Vec::new(),
-            area: came.area,
-            report,
-        }
     }
 
     /// Closes the part and makes it its own image, where it is to be.

@@ -37,6 +37,16 @@ struct Faces {
     kept: Vec<[VertexId; 2]>,
 }
 
+/// Some edges of a mesh, each once, smaller end first, in order.
+pub fn edges(mesh: &TriangleMesh, is_wanted: &HalfedgeMap<bool>) -> Vec<[VertexId; 2]> {
+    let wanted = mesh.halfedge_ids().filter(|&h| is_wanted[h]);
+    let ends = wanted.map(|h| [mesh.origin(h), mesh.target(h)]);
+    let mut edges: Vec<_> = ends.map(|[a, b]| [a.min(b), a.max(b)]).collect();
+    edges.sort_unstable();
+    edges.dedup();
+    edges
+}
+
 impl Wanted<'_> {
     /// Why nothing is tried that needs handles to be cut; none where there are few.
     pub fn too_many_handles(&self, whole: &Whole) -> Option<String> {
@@ -113,11 +123,7 @@ impl Wanted<'_> {
         let kept = self.kept(whole, &mesh);
         let part = progress.part("pair", 0.5, 1.0);
         if self.settings.kind == Kind::Triangles {
-            let kept = mesh.halfedge_ids().filter(|&h| kept[h]);
-            let ends = kept.map(|h| [mesh.origin(h), mesh.target(h)]);
-            let mut kept: Vec<_> = ends.map(|[a, b]| [a.min(b), a.max(b)]).collect();
-            kept.sort_unstable();
-            kept.dedup();
+            let kept = edges(&mesh, &kept);
             let mesh = PolygonMesh::from(&mesh);
             return Ok(Faces { mesh, kept });
         }
@@ -136,5 +142,56 @@ impl Wanted<'_> {
         halfedges
             .map(|h| sharp[h] || marked.iter().any(|marked| marked[h]))
             .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::embed::Solver;
+    use crate::measure::topology;
+    use crate::pipeline::Settings;
+    use crate::pipeline::density::Density;
+    use crate::pipeline::marks::Marks;
+    use crate::pipeline::mirror::Role;
+    use crate::shapes;
+
+    #[test]
+    fn a_torus_and_one_with_a_window_stay_what_they_are_at_any_count() {
+        let torus = shapes::torus(24, 12);
+        let some = torus.faces().iter().skip(40).copied();
+        let (open, _) = TriangleMesh::of_faces(torus.positions(), some).unwrap();
+        let (marks, density, quiet) = (Marks::default(), Density::default(), Progress::none());
+        for (mesh, n_borders) in [(&torus, 0), (&open, 1)] {
+            for n_faces in [40, 300, 900] {
+                for kind in [Kind::Quads, Kind::Triangles] {
+                    let settings = Settings {
+                        kind,
+                        ..Settings::default()
+                    };
+                    let wanted = Wanted {
+                        n_faces,
+                        settings: &settings,
+                        predictor: &Solver::default(),
+                        mirror: (&Role::Alone(None), None),
+                        reduced: None,
+                        marks: &marks,
+                        density: &density,
+                    };
+                    let whole = Whole::new(mesh.clone(), (&settings, &marks), &quiet).unwrap();
+                    let laid = wanted.uncut(&whole, &mut Clock::default(), &quiet).unwrap();
+                    let made = &laid.deformed.mesh;
+                    let found = topology(made, &quiet).unwrap();
+                    assert_eq!((found.genus, found.n_borders), (Some(1), n_borders));
+                    assert!(10 * made.n_faces().abs_diff(n_faces) <= n_faces);
+                    let n_quads = if kind == Kind::Quads {
+                        made.n_faces()
+                    } else {
+                        0
+                    };
+                    assert_eq!(made.n_quads(), n_quads);
+                }
+            }
+        }
     }
 }

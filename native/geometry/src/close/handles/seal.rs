@@ -69,7 +69,7 @@ pub fn seal(mesh: &TriangleMesh, size: f64, progress: &Progress) -> Result<Seale
         is_side.resize(pieces.mesh.n_vertices(), false);
         let is_everywhere = near.is_none();
         let (found, roots) = candidates(&pieces.mesh, (size, near.as_deref()), progress)?;
-        let chosen = apart(&pieces.mesh, found, progress)?;
+        let chosen = apart(&pieces.mesh, &found, progress)?;
         if chosen.is_empty() {
             if is_everywhere {
                 break;
@@ -153,7 +153,7 @@ fn candidates(
 /// Those of some loops that can all be cut and leave one piece; longer ones stay first.
 fn apart(
     mesh: &TriangleMesh,
-    found: Vec<Candidate>,
+    found: &[Candidate],
     progress: &Progress,
 ) -> Result<Vec<Vec<VertexId>>, close::Error> {
     if found.is_empty() {
