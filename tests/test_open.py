@@ -140,6 +140,48 @@ def test_a_size_says_which_borders_are_filled() -> None:
     assert (report["settings"]["borders"], report["output"]["n_borders"]) == ("keep", 2)
 
 
+def torus() -> tuple[Points, NDArray[np.int32]]:
+    square, quads = rows(12, 32, is_round=True)
+    # The last row is the first.
+    quads = np.where(quads >= 12 * 32, quads - 12 * 32, quads).astype(np.int32)
+    tube, ring = 2 * np.pi * square[: 12 * 32].T
+    radius = 1 + 0.3 * np.cos(tube)
+    return np.column_stack([radius * np.cos(ring), radius * np.sin(ring), 0.3 * np.sin(tube)]), quads
+
+
+def test_a_size_says_which_handles_are_sealed() -> None:
+    # Round the tube it is 50 % of the diagonal.
+    mesh = arrays(*torus())
+    for size, n_sealed in ((45.0, 0), (60.0, 1)):
+        report = orbflow_native.remesh(*mesh, faces=200, handles="seal", seal_size=size).report
+        opened = report["parts"][0]["opened"]
+        assert (opened["n_sealed"] if opened else 0) == n_sealed
+        assert report["output"]["genus"] == 1 - n_sealed
+        assert report["settings"]["handles"] == {"seal-up-to": size}
+        assert report["score"]["same_topology"]
+
+
+def test_the_line_says_how_many_handles_were_sealed(
+    open_fixture: Open, capfd: pytest.CaptureFixture[str]
+) -> None:
+    open_fixture("03")
+    thing = new(*torus())
+    assert press.orbflow_remesh(faces=200, handles="SEAL", seal_size=60.0) == {"FINISHED"}
+    assert topology(thing) == (0, 0)
+    assert "; 1 handle sealed" in capfd.readouterr().out
+
+
+def test_the_add_on_asks_for_handles_to_be_sealed_up_to_a_size(open_fixture: Open) -> None:
+    open_fixture("03")
+    settings, wanted = addon("settings"), bpy.context.scene.orbflow
+    assert settings.for_core(wanted)["handles"] == "keep"
+    assert not settings.is_of_use(wanted, "seal_size")
+    wanted.handles, wanted.seal_size = "SEAL", 2.5
+    of_core = settings.for_core(wanted)
+    assert (of_core["handles"], of_core["seal_size"]) == ("seal", 2.5)
+    assert settings.is_of_use(wanted, "seal_size")
+
+
 def test_the_add_on_asks_for_all_or_for_a_size(open_fixture: Open) -> None:
     open_fixture("03")
     settings, wanted = addon("settings"), bpy.context.scene.orbflow

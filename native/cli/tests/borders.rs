@@ -161,6 +161,26 @@ fn a_plate_stays_a_plate_with_its_corners() {
 }
 
 #[test]
+fn handles_are_sealed_up_to_a_size() {
+    let ring = |s: f64, t: f64| {
+        let [tube, round] = [2.0 * PI * s, 2.0 * PI * t];
+        let r = 1.0 + 0.3 * cos(tube);
+        [r * cos(round), r * sin(round), 0.3 * sin(tube)]
+    };
+    // A torus as rows whose last is the first: positions that are equal are one.
+    let torus = rows([12, 32], true, ring);
+    // Round the tube it is 50 % of the diagonal.
+    for (handles, n_sealed) in [("keep", 0), ("seal:45", 0), ("seal:60", 1)] {
+        let done = remesh(&torus, &["--faces", "200", "--handles", handles]);
+        let [_, after] = done.topologies();
+        assert_eq!((after.n_borders, after.genus), (0, Some(1 - n_sealed)));
+        let says = done.err.contains("open.obj: 1 handle sealed");
+        assert_eq!(says, n_sealed > 0, "{}", done.err);
+        assert_eq!(done.report["score"]["same_topology"], true);
+    }
+}
+
+#[test]
 fn borders_are_filled_all_of_them_or_those_up_to_a_size() {
     // Round the tube it is 152 % of the diagonal.
     for (borders, n_filled) in [("fill", 2), ("fill:160", 2), ("fill:150", 0)] {

@@ -163,6 +163,13 @@ proptest! {
     }
 
     #[test]
+    fn what_is_closed_cut_filled_and_sealed_has_the_topology_that_this_makes(
+        bytes in prop::collection::vec(any::<u8>(), 3..60)
+    ) {
+        common::closing::check(&bytes);
+    }
+
+    #[test]
     fn a_run_cancelled_anywhere_says_so(n_calls in 0_usize..60) {
         let mesh = common::polygons(&common::blob(3, 8));
         let token = CancelToken::new();

@@ -13,6 +13,7 @@
 //! ([`pair_open`]): beside a border a triangle without a partner becomes a quad by a vertex more on
 //! it. Not done here: laying the quads on the surface (`deform`).
 
+mod grid;
 mod improve;
 mod matching;
 mod open;
@@ -29,6 +30,7 @@ use thiserror::Error;
 use crate::mesh::{HalfedgeId, HalfedgeMap, Id, PolygonMesh, TriangleMesh, VertexId};
 use crate::progress::{Cancelled, Progress};
 use crate::sphere_map::{SphereMap, is_positive};
+pub use grid::Grid;
 pub use open::{OpenPairs, pair_open};
 pub use refine::refine;
 pub use split::split;

@@ -15,6 +15,11 @@ use crate::progress::{Cancelled, Progress};
 
 /// What a triangle is worth that becomes a quad by itself: less than two pairs may be together.
 const ALONE: f64 = -4.0;
+/// A pair with a corner that is straight, or turns the wrong way, is worth so much less: where vertices
+/// lie on a straight line that is to stay, nothing mends it.
+const STRAIGHT: f64 = 2.0;
+/// The sine of a corner that counts as straight.
+const LEAST_SINE: f64 = 0.05;
 
 /// Quads of pairs of triangles, and of triangles at borders.
 #[derive(Clone, PartialEq, Debug)]
@@ -85,6 +90,7 @@ pub fn pair_open(
 fn mates(mesh: &TriangleMesh, stay: Stay<'_>, progress: &Progress) -> Result<Vec<u32>, Cancelled> {
     let n = mesh.n_faces();
     let mut arcs = worth::arcs(mesh, stay);
+    worth::shun(mesh, &mut arcs, (LEAST_SINE, STRAIGHT));
     let mut both = with_images(mesh, &arcs);
     let mut mate = largest(&both, &progress.part("", 0.0, 0.6))?;
     let own = |mate: &[u32]| -> Vec<u32> {
@@ -147,4 +153,71 @@ fn middle(mesh: &TriangleMesh, face: FaceId) -> Option<DVec3> {
     let h = border_side(mesh, face)?;
     let [a, b] = [mesh.origin(h), mesh.target(h)].map(|v| mesh.position(v));
     Some(a.midpoint(b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::{topology, topology_of_triangles};
+    use crate::shapes;
+
+    /// Some faces of a mesh alone, where they are one surface.
+    fn some(mesh: &TriangleMesh, is_left: impl Fn(usize) -> bool) -> Option<TriangleMesh> {
+        let faces = mesh.faces().iter().enumerate();
+        let faces = faces.filter(|(i, _)| is_left(*i)).map(|(_, face)| *face);
+        let (piece, _) = TriangleMesh::of_faces(mesh.positions(), faces).ok()?;
+        (piece.face_components().1 == 1).then_some(piece)
+    }
+
+    fn check(name: &str, mesh: &TriangleMesh) -> OpenPairs {
+        let nothing = HalfedgeMap::filled(3 * mesh.n_faces(), false);
+        let pairs = pair_open(mesh, &nothing, &Progress::none()).unwrap();
+        let n = pairs.quads.n_faces();
+        assert_eq!(pairs.quads.n_quads(), n, "{name}");
+        assert!(
+            2 * n >= mesh.n_faces() - 2 * (mesh.n_faces() / 10),
+            "{name}"
+        );
+        let found = topology(&pairs.quads, &Progress::none()).unwrap();
+        let came = topology_of_triangles(mesh);
+        assert_eq!(
+            (found.genus, found.n_borders, found.n_components),
+            (came.genus, came.n_borders, came.n_components),
+            "{name}"
+        );
+        pairs
+    }
+
+    #[test]
+    fn all_triangles_become_quads_of_the_same_topology() {
+        check("torus", &shapes::torus(9, 5));
+        let ball = shapes::blob(3, 6);
+        let torus = shapes::torus(12, 8);
+        let mut n_pieces = 0;
+        for n in 1..90 {
+            let pieces = [
+                ("first faces", some(&ball, |i| i < 2 * n)),
+                ("ball without faces", some(&ball, |i| i % 97 != n)),
+                ("torus without faces", some(&torus, |i| i % 61 != n % 61)),
+            ];
+            for (name, piece) in pieces {
+                let Some(piece) = piece else { continue };
+                check(name, &piece);
+                n_pieces += 1;
+            }
+        }
+        assert!(n_pieces > 150, "{n_pieces}");
+    }
+
+    #[test]
+    fn a_box_of_halved_squares_gets_its_squares_back() {
+        let cube = shapes::cuboid(5);
+        let pairs = check("cube", &cube);
+        let quads = &pairs.quads;
+        let is_square = |face: &[VertexId]| {
+            squareness([0, 1, 2, 3].map(|i| quads.position(face[i]))) > 1.0 - 1e-9
+        };
+        assert!(quads.faces().all(is_square));
+        assert_eq!(quads.n_faces(), 150);
+    }
 }

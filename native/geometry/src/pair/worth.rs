@@ -58,6 +58,17 @@ pub(super) fn arcs(mesh: &TriangleMesh, stay: Stay<'_>) -> Vec<[(u32, f64); 3]> 
     all.collect()
 }
 
+/// Makes the pairs dearer whose worst corner has a smaller sine than `least`.
+pub(super) fn shun(mesh: &TriangleMesh, arcs: &mut [[(u32, f64); 3]], (least, by): (f64, f64)) {
+    for h in mesh.halfedge_ids() {
+        let Some(twin) = mesh.twin(h) else { continue };
+        let quad = corners(mesh, h.min(twin)).map(|v| mesh.position(v));
+        if squareness(quad) < least {
+            arcs[h.face().index()][h.corner()].1 -= by;
+        }
+    }
+}
+
 /// Makes the pairs dearer that leave two quads or fewer at a vertex, or one on a side of firm edges
 /// that go straight on; false if there are none.
 pub(super) fn ease(

@@ -47,7 +47,8 @@ pub struct Opened {
     pub n_borders: usize,
     /// How many of them were filled for good.
     pub n_filled: usize,
-    /// How the others were closed while quads were made; none where there are no others.
+    /// How the others were closed while quads were made; none where there are no others, or nothing had
+    /// to be closed.
     pub way: Option<Closure>,
     /// How many of its handles were sealed for good.
     pub n_sealed: usize,

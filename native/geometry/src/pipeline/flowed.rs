@@ -33,6 +33,8 @@ pub enum Flowed {
         /// What had to be repaired to lay them on the sphere.
         cover: embed::CoverReport,
     },
+    /// They are a grid, as the part was: with other counts.
+    Grid,
     /// They do not.
     Refused {
         /// Why not.

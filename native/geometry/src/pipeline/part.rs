@@ -10,6 +10,7 @@ use super::flow::Asked;
 use super::flowed::{Flowed, FlowedPart};
 use super::ground::Ground;
 use super::laid::{Instead, Laid};
+use super::mapless::Came;
 use super::marks::Marks;
 use super::mirror::{Faced, Plane, Role, face};
 use super::open::{Closing, Whole};
@@ -72,15 +73,7 @@ struct Ready<'a> {
     opened: Option<Opened>,
 }
 
-/// What is told of a part however it is made.
-#[derive(Clone, Copy)]
-struct Came {
-    n_input_faces: usize,
-    n_asked_faces: usize,
-    area: f64,
-}
-
-impl<'a> PartJob<'a> {
+impl PartJob<'_> {
     pub fn run(self, clock: &mut Clock, progress: &Progress<'_>) -> Result<PartResult, Error> {
         let Self { part, wanted } = self;
         let came = Came {
@@ -91,7 +84,12 @@ impl<'a> PartJob<'a> {
         let mut whole = Whole::new(part, (wanted.settings, wanted.marks), progress)?;
         let filling = std::mem::take(&mut whole.filling);
         let made = if whole.is_open() {
-            let reason = match wanted.too_many_handles(&whole) {
+            if let Some(laid) = wanted.grid(&whole, progress)? {
+                let made = wanted.without_map((&whole, came), laid, Some(Flowed::Grid));
+                return Ok(PartResult { filling, ..made });
+            }
+            let reason = wanted.too_few().or_else(|| wanted.too_many_handles(&whole));
+            let reason = match reason {
                 Some(reason) => Err(reason),
                 None => told(wanted.run((whole.clone(), came), clock, progress))?,
             };
@@ -146,48 +144,6 @@ impl Wanted<'_> {
             sphere: made.deformed.sphere,
             features: made.deformed.features,
             crosses: made.crosses,
-            filling: Vec::new(),
-            area: came.area,
-            report,
-        })
-    }
-
-    /// The same without anything closed or cut.
-    fn run_uncut(
-        &self,
-        (whole, came): (&Whole, Came),
-        reason: String,
-        clock: &mut Clock,
-        progress: &Progress<'_>,
-    ) -> Result<PartResult, Error> {
-        let laid = self.uncut(whole, clock, progress)?;
-        let of_part = match self.mirror.0 {
-            Role::Whole => Some("only quads that flow can be".to_owned()),
-            Role::Alone(reason) => reason.clone(),
-            Role::ImageOf(_) => None,
-        };
-        let flow = (self.settings.primitive() == Primitive::Flow).then(|| Flowed::Refused {
-            reason,
-            instead: Instead::PairedTriangles,
-        });
-        let report = PartReport {
-            n_input_faces: came.n_input_faces,
-            n_asked_faces: came.n_asked_faces,
-            n_faces: laid.deformed.mesh.n_faces(),
-            reduced: None,
-            decimate: None,
-            opened: whole.told,
-            embedding: embed::Report::none(),
-            flow,
-            mirrored: of_part.map(|reason| Mirrored::Refused { reason }),
-            sphere: None,
-            deform: laid.deformed.report,
-        };
-        Ok(PartResult {
-            mesh: laid.deformed.mesh,
-            sphere: laid.deformed.sphere,
-            features: laid.deformed.features,
-            crosses: Vec::new(),
             filling: Vec::new(),
             area: came.area,
             report,

@@ -1,6 +1,7 @@
 //! Closed meshes for tests, chosen by property: round, bumpy, with corners, long, with limbs.
 #![allow(dead_code, missing_docs)] // Every test file uses a part of them.
 
+pub mod closing;
 pub mod conformance;
 pub mod edits;
 

@@ -69,7 +69,7 @@ pub fn seal(mesh: &TriangleMesh, size: f64, progress: &Progress) -> Result<Seale
         is_side.resize(pieces.mesh.n_vertices(), false);
         let is_everywhere = near.is_none();
         let (found, roots) = candidates(&pieces.mesh, (size, near.as_deref()), progress)?;
-        let chosen = apart(&pieces.mesh, found, progress)?;
+        let chosen = apart(&pieces.mesh, &found, progress)?;
         if chosen.is_empty() {
             if is_everywhere {
                 break;
@@ -153,7 +153,7 @@ fn candidates(
 /// Those of some loops that can all be cut and leave one piece; longer ones stay first.
 fn apart(
     mesh: &TriangleMesh,
-    found: Vec<Candidate>,
+    found: &[Candidate],
     progress: &Progress,
 ) -> Result<Vec<Vec<VertexId>>, close::Error> {
     if found.is_empty() {
@@ -177,4 +177,51 @@ fn apart(
     }
     chosen.reverse();
     Ok(chosen)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::close::handles::tests::bridged;
+    use crate::shapes;
+
+    fn sealed(mesh: &TriangleMesh, size: f64) -> (Sealed, i64) {
+        let sealed = seal(mesh, size, &Progress::none()).unwrap();
+        let shape = topology_of_triangles(&sealed.mesh);
+        let came = topology_of_triangles(mesh);
+        assert_eq!((shape.n_components, shape.n_borders), (1, came.n_borders));
+        for (h, side) in sealed.sides.ids().zip(&sealed.sides) {
+            assert!(
+                side.is_none_or(|side| side.index() < 3 * mesh.n_faces()),
+                "{h}"
+            );
+        }
+        let genus = shape.genus.unwrap();
+        assert_eq!(genus, came.genus.unwrap() - sealed.n_sealed as i64);
+        (sealed, genus)
+    }
+
+    #[test]
+    fn all_handles_that_are_small_are_sealed_at_once() {
+        for seed in 1..4 {
+            let mesh = bridged((12, seed), 12, 3);
+            assert_eq!(sealed(&mesh, 10.0).1, 0, "{seed}");
+            assert_eq!(sealed(&mesh, 0.0).0.mesh, mesh);
+        }
+    }
+
+    #[test]
+    fn a_torus_is_sealed_from_the_length_round_its_tube_on() {
+        let torus = shapes::torus(48, 24);
+        let tube = std::f64::consts::TAU * 0.4;
+        assert_eq!(sealed(&torus, 0.9 * tube).1, 1);
+        assert_eq!(sealed(&torus, 1.1 * tube).1, 0);
+    }
+
+    #[test]
+    fn a_narrow_limb_is_not_cut_through() {
+        let limbs = shapes::limbs(1, 10);
+        let (sealed, genus) = sealed(&limbs, 10.0);
+        assert_eq!((genus, sealed.mesh), (0, limbs));
+    }
 }

@@ -10,7 +10,7 @@ use crate::random::Random;
 use crate::shapes;
 
 /// A ball with tubes between random faces and some faces missing; no two of all these touch.
-fn bridged((n, seed): (u32, u64), n_bridges: usize, n_missing: usize) -> TriangleMesh {
+pub(super) fn bridged((n, seed): (u32, u64), n_bridges: usize, n_missing: usize) -> TriangleMesh {
     let ball = shapes::blob(seed, n);
     let mut random = Random::new(seed);
     let mut near = BTreeSet::new();

@@ -94,3 +94,85 @@ pub fn marks_of_pieces(
     let ends = ends.map(|(h, _)| [pieces.origin(h), pieces.target(h)].map(|v| pieces.position(v)));
     Marks::at(ends)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::elementary::sin_cos;
+    use crate::mesh::VertexId;
+    use crate::pipeline::Borders;
+    use crate::shapes;
+
+    fn whole(mesh: &TriangleMesh, settings: &Settings) -> Whole {
+        let nothing = Marks::default();
+        Whole::new(mesh.clone(), (settings, &nothing), &Progress::none()).unwrap()
+    }
+
+    /// A torus of wavy rings, so that no edges go straight round its tube.
+    fn wavy() -> TriangleMesh {
+        let torus = shapes::torus(60, 20);
+        let bent = torus.positions().iter().enumerate().map(|(i, p)| {
+            let (wave, _) = sin_cos(0.3 * (i % 20) as f64 * std::f64::consts::TAU / 2.0);
+            let (s, c) = sin_cos(0.1 * wave);
+            DVec3::new(c * p.x - s * p.y, s * p.x + c * p.y, p.z)
+        });
+        torus.with_positions(bent.collect())
+    }
+
+    #[test]
+    fn a_border_longer_than_a_handle_is_filled_before_the_handle_is_cut() {
+        let torus = shapes::torus(48, 12);
+        // A window nearly half round the ring.
+        let is_left = |face: &[VertexId; 3]| {
+            face.iter().any(|&v| {
+                let p = torus.position(v);
+                p.y < 0.2 || p.z < 0.1
+            })
+        };
+        let faces = torus.faces().iter().copied().filter(is_left);
+        let (open, _) = TriangleMesh::of_faces(torus.positions(), faces).unwrap();
+        let settings = Settings {
+            borders: Borders::Fill,
+            ..Settings::default()
+        };
+        let whole = whole(&open, &settings);
+        assert_eq!((whole.shape.closed, whole.shape.genus), (true, Some(1)));
+        assert_eq!(whole.told.unwrap().n_filled, 1);
+        assert!(!whole.filling.is_empty());
+    }
+
+    #[test]
+    fn sealed_handles_are_told_of_and_their_lids_fill() {
+        let torus = shapes::torus(48, 24);
+        let settings = |size_pct| Settings {
+            handles: Handles::SealUpTo(size_pct),
+            ..Settings::default()
+        };
+        let tube = 40.0 * std::f64::consts::TAU;
+        let sealed = whole(&torus, &settings(1.1 * tube));
+        assert_eq!(
+            (sealed.shape.genus, sealed.told.unwrap().n_sealed),
+            (Some(0), 1)
+        );
+        assert!(sealed.shape.closed);
+        assert!(!sealed.is_open() && !sealed.filling.is_empty());
+        let kept = whole(&torus, &settings(0.9 * tube));
+        assert!(kept.is_open() && kept.told.is_none());
+    }
+
+    #[test]
+    fn marks_on_edges_that_a_cut_splits_go_on_in_the_pieces() {
+        let mesh = wavy();
+        let ends = mesh
+            .halfedge_ids()
+            .map(|h| [mesh.origin(h), mesh.target(h)]);
+        let all = Marks::at(ends.map(|ends| ends.map(|v| mesh.position(v))));
+        let cut = handles::cut(&mesh, &Progress::none()).unwrap();
+        let pieces = marks_of_pieces((&mesh, &all), (&cut.mesh, &cut.sides));
+        let (before, after) = (all.on(&cut.mesh), pieces.on(&cut.mesh));
+        let halves = cut.mesh.halfedge_ids().zip(&cut.sides);
+        let own: Vec<_> = halves.filter(|(_, side)| side.is_some()).collect();
+        assert!(own.iter().any(|&(h, _)| !before[h]));
+        assert!(own.iter().all(|&(h, _)| after[h]));
+    }
+}
