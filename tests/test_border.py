@@ -74,6 +74,9 @@ def test_panel_and_operator_have_the_same_settings(operator: Any, scene_settings
         "small_size",
         "borders",
         "fill_size",
+        "solid",
+        "solid_detail",
+        "inner",
         "use_weld",
         "weld",
         "predictor",
@@ -97,6 +100,9 @@ def test_the_add_on_has_the_defaults_and_ranges_of_the_core(operator: Any) -> No
     assert operator["small_parts"].default.lower() == given["small_parts"]
     assert operator["borders"].default.lower() == given["borders"]
     assert (operator["fill_size"].default, given["fill_size"]) == (0.0, None)
+    assert operator["solid"].default == given["solid"]
+    assert operator["solid_detail"].default == pytest.approx(given["solid_detail"])
+    assert operator["inner"].default.lower() == given["inner"]
     assert operator["predictor"].default.lower() == given["predictor"]
     assert (operator["primitive"].default, given["primitive"]) == ("AUTO", None)
 
@@ -130,7 +136,9 @@ def test_the_core_takes_the_largest_that_the_add_on_offers(
         orbflow_native.remesh(*ball(), **wanted | {name: most * 1.01})
 
 
-@pytest.mark.parametrize("name", ["kind", "primitive", "predictor", "small_parts", "borders"])
+@pytest.mark.parametrize(
+    "name", ["kind", "primitive", "predictor", "small_parts", "borders", "inner"]
+)
 def test_the_add_on_offers_what_the_core_takes(operator: Any, name: str) -> None:  # noqa: ANN401
     offered = {item.identifier.lower().replace("_", "-") for item in operator[name].enum_items}
     # Kind and primitive have no word for it: nothing stands for it there.
