@@ -48,6 +48,10 @@ _HANDLES = (
     ("KEEP", "Keep", "Handles, as of a cup, stay, and so do holes that go through"),
     ("SEAL", "Seal", "Small ones, as noise in scans has them, are cut and closed"),
 )
+_INNER = (
+    ("KEEP", "Keep", "They are parts like others"),
+    ("DROP", "Leave Out", "The result is without them"),
+)
 _MIRRORS = (
     ("OFF", "Off", "The two sides of a mesh need not be alike"),
     ("AUTO", "Automatic", "Across the first axis, if any, in which every vertex has its image"),
@@ -235,6 +239,32 @@ class Settings:
         soft_max=100.0,
         subtype="PERCENTAGE",
     )
+    solid: BoolProperty(
+        name="Make Solid",
+        description=(
+            "Make everything one closed surface first: parts that pass through each other, double "
+            "walls, cavities and open pieces"
+        ),
+        default=False,
+    )
+    solid_detail: FloatProperty(
+        name="Detail",
+        description=(
+            "The size of the cells that make it solid: walls and gaps that are thinner than this "
+            "share of the mesh's size are lost, smaller cells take more time and memory"
+        ),
+        default=0.4,
+        min=0.02,
+        max=5.0,
+        precision=2,
+        step=1,
+        subtype="PERCENTAGE",
+    )
+    inner: EnumProperty(
+        name="Inner Parts",
+        description="What becomes of closed parts that lie wholly inside another",
+        items=_INNER,
+    )
     use_weld: BoolProperty(
         name="Weld Seams",
         description="Close gaps between open edges that lie on each other, as imported seams do",
@@ -309,7 +339,8 @@ SECTIONS = {
     "Symmetry": ("mirror", "mirror_modifier"),
     "Guides and Density": ("marked_edges", "density"),
     "Keep": (
-        *("borders", "fill_size", "handles", "seal_size", "small_parts", "small_size"),
+        *("borders", "fill_size", "handles", "seal_size", "solid", "solid_detail", "inner"),
+        *("small_parts", "small_size"),
         *("use_modifiers", "use_weld", "weld", "keep_original", "weights_limit"),
     ),
     "Advanced": ("primitive", "predictor", "threads", "seed"),
@@ -348,6 +379,7 @@ def for_core(source: Settings) -> dict[str, Any]:
         # Blender keeps fewer digits; those beyond are not what was asked for.
         "weld": float(f"{source.weld / 100:.6g}") if source.use_weld else None,
         "fill_size": source.fill_size or None,
+        "solid_detail": float(f"{source.solid_detail:.6g}"),
         "mirror": source.mirror.lower(),
         "predictor": source.predictor.lower(),
         "weights": preferences.weights() if source.predictor != "SOLVER" else None,
@@ -365,6 +397,10 @@ def is_of_use(source: Settings, name: str) -> bool:
         return source.borders == "FILL"
     if name == "seal_size":
         return source.handles == "SEAL"
+    if name == "solid_detail":
+        return source.solid
+    if name == "inner":
+        return not source.solid
     return name != "weld" or source.use_weld
 
 

@@ -8,6 +8,7 @@ from typing import Any
 STEPS = {
     "starting": "starting",
     "clean": "checking the mesh",
+    "solid": "making it solid",
     "decimate": "unfolding",
     "embed": "unfolding",
     "sphere": "mapping",
@@ -34,6 +35,7 @@ OF_MANY = {
     "one-sided": "whose inside and outside cannot be told apart (like a Moebius strip)",
     "flat": "flat",
     "small": "too small for this face count",
+    "inside": "inside others",
     "failed": "that could not be done",
 }
 # Why one part is left, where that has no numbers.
@@ -41,6 +43,7 @@ _OF_ONE = {
     "one-sided": "inside and outside cannot be told apart (like a Moebius strip)",
     "flat": "is flat",
     "small": "is too small for this face count",
+    "inside": "lies inside another",
 }
 _OUTCOMES = {"kept": "left as they were", "dropped": "left out"}
 # What whole bodies, heads and props have that artists modelled: at least, at most.
@@ -159,8 +162,8 @@ def _kept(report: dict[str, Any], *, small: bool) -> list[str]:
 
 
 def _is_small(part: dict[str, Any]) -> bool:
-    """Whether a part was left because it is small, whatever else it is."""
-    return any(each["kind"] == "small" for each in part["reasons"])
+    """Whether a part was left because it is small or inside another, whatever else it is."""
+    return any(each["kind"] in {"small", "inside"} for each in part["reasons"])
 
 
 def _reasons(parts: list[dict[str, Any]]) -> list[str]:
@@ -179,6 +182,7 @@ def exceptions(report: dict[str, Any]) -> list[str]:
     lost = ", ".join(sorted(set(report["lost"])))
     told = [_without_marks(report), f"not carried over: {lost}" if lost else ""]
     told += [_cleaned(report), _welded(report), _parted(report), _shown(report)]
+    told += [_solid(report["solid"])] if report["solid"] else []
     told += filled(report) + _modifiers(report)
     return [each for each in told if each]
 
@@ -215,6 +219,20 @@ def filled(report: dict[str, Any]) -> list[str]:
     n_filled, n_sealed = (sum(each[name] for each in opened) for name in ("n_filled", "n_sealed"))
     told = [f"{count(n_filled, 'border')} filled"] if n_filled else []
     return told + ([f"{count(n_sealed, 'handle')} sealed"] if n_sealed else [])
+
+
+def _solid(solid: dict[str, Any]) -> str:
+    """What became of the shells that were made one surface."""
+    counts = (
+        ("n_walls", "with open edges closed"),
+        ("n_turned", "turned inside out"),
+        ("n_sheets", "made thick"),
+        ("n_scraps", "left out: too small to be made thick"),
+    )
+    told = [f"{solid[name]:,} {what}" for name, what in counts if solid[name]]
+    told += [f"{count(solid['n_dropped'], 'speck')} left out"] if solid["n_dropped"] else []
+    shells, pieces = count(solid["n_shells"], "shell"), count(solid["n_pieces"], "closed surface")
+    return f"{shells} made {pieces}" + (f" ({', '.join(told)})" if told else "")
 
 
 def _modifiers(report: dict[str, Any]) -> list[str]:

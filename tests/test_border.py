@@ -79,6 +79,9 @@ def test_panel_and_operator_have_the_same_settings(operator: Any, scene_settings
         "fill_size",
         "handles",
         "seal_size",
+        "solid",
+        "solid_detail",
+        "inner",
         "use_weld",
         "weld",
         "keep_original",
@@ -106,6 +109,9 @@ def test_the_add_on_has_the_defaults_and_ranges_of_the_core(operator: Any) -> No
     assert (operator["fill_size"].default, given["fill_size"]) == (0.0, None)
     assert operator["handles"].default.lower() == given["handles"]
     assert operator["seal_size"].default == given["seal_size"]
+    assert operator["solid"].default == given["solid"]
+    assert operator["solid_detail"].default == pytest.approx(given["solid_detail"])
+    assert operator["inner"].default.lower() == given["inner"]
     assert operator["predictor"].default.lower() == given["predictor"]
     assert (operator["primitive"].default, given["primitive"]) == ("AUTO", None)
 
@@ -141,7 +147,7 @@ def test_the_core_takes_the_largest_that_the_add_on_offers(
 
 
 @pytest.mark.parametrize(
-    "name", ["kind", "primitive", "predictor", "small_parts", "borders", "handles"]
+    "name", ["kind", "primitive", "predictor", "small_parts", "borders", "handles", "inner"]
 )
 def test_the_add_on_offers_what_the_core_takes(operator: Any, name: str) -> None:  # noqa: ANN401
     offered = {item.identifier.lower().replace("_", "-") for item in operator[name].enum_items}

@@ -286,6 +286,9 @@ fn tell_all(place: &Place, report: &pipeline::Report) {
     tell(place, &report.clean);
     parts::tell_filled(place, &report.parts);
     parts::tell_sealed(place, &report.parts);
+    if let Some(solid) = &report.solid {
+        parts::tell_solid(place, solid);
+    }
     parts::tell(place, &report.kept);
     for warning in &report.warnings {
         eprintln!("{place}: warning: {}", warning.text);

@@ -4,7 +4,8 @@ use std::ops::RangeInclusive;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser, ValueParser};
 use orbflow_geometry::pipeline::{
-    Borders, Handles, Kind, MAX_FACES, MAX_FILL, MAX_WELD, MIN_FACES, Mirror, Primitive, SmallParts,
+    Borders, Handles, Inner, Kind, MAX_FACES, MAX_FILL, MAX_WELD, MIN_FACES, Mirror, Primitive,
+    SOLID_DETAILS, SmallParts,
 };
 
 use crate::formats::FileFormat;
@@ -83,6 +84,21 @@ pub fn handles(text: &str) -> Result<Handles, String> {
         Some(("seal", size)) => up_to(size, MAX_FILL).map(Handles::SealUpTo),
         _ => Err("it is keep or seal:SIZE".to_owned()),
     }
+}
+
+/// Reads the detail of a solid.
+pub fn solid_detail(text: &str) -> Result<f64, String> {
+    let [least, most] = SOLID_DETAILS;
+    let value = text.parse().map_err(|error| format!("{error}"))?;
+    if (least..=most).contains(&value) {
+        return Ok(value);
+    }
+    Err(format!("it goes from {least} to {most}"))
+}
+
+/// A parser of what becomes of parts inside others.
+pub fn inner() -> ValueParser {
+    named(&[Inner::Keep, Inner::Drop], Inner::name)
 }
 
 /// A parser of what becomes of small parts.

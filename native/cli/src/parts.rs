@@ -2,10 +2,11 @@
 
 use clap::Args;
 use orbflow_geometry::pipeline::{
-    Borders, Flaw, Handles, Kept, Outcome, PartReport, Reason, Settings, SmallParts,
+    Borders, Flaw, Handles, Inner, Kept, Outcome, PartReport, Reason, SOLID_DETAIL, Settings,
+    SmallParts, Solid,
 };
 
-use crate::parsers::{borders, handles, percent, small_parts, weld};
+use crate::parsers::{borders, handles, inner, percent, small_parts, solid_detail, weld};
 use crate::place::Place;
 
 /// The most lines about single parts.
@@ -29,6 +30,8 @@ pub struct OfParts {
     /// longer than SIZE % of the mesh's diagonal, from 0 to 1000, as of noise in scans
     #[arg(long, value_name = "keep|seal:SIZE", default_value = "keep", value_parser = handles)]
     pub handles: Handles,
+    #[command(flatten)]
+    pub shells: OfShells,
     /// Weld borders that lie on each other up to a gap of this share of the mesh's diagonal, 0.01 at
     /// most; off: weld equal points alone
     #[arg(long, value_name = "D|off", default_value = "1e-5", value_parser = weld)]
@@ -37,6 +40,22 @@ pub struct OfParts {
     /// of the result is grave: inverted quads, crossing faces, a surface that is far off
     #[arg(long)]
     pub strict: bool,
+}
+
+/// What becomes of shells that intersect or lie in each other.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct OfShells {
+    /// Make everything one closed surface first: shells that intersect, double walls, cavities and
+    /// open scraps
+    #[arg(long)]
+    pub solid: bool,
+    /// With --solid, the size of the cells of the grid that does it, in percent of the mesh's
+    /// diagonal, 0.02 to 5: thinner walls and gaps are lost
+    #[arg(long, value_name = "PERCENT", default_value_t = SOLID_DETAIL, value_parser = solid_detail)]
+    pub solid_detail: f64,
+    /// What becomes of closed parts that lie wholly inside another: they are parts like others, or go
+    #[arg(long, default_value = Inner::default().name(), value_parser = inner())]
+    pub inner: Inner,
 }
 
 /// A weld distance; none welds equal points alone.
@@ -51,6 +70,9 @@ impl OfParts {
             small_size: self.small_size,
             borders: self.borders,
             handles: self.handles,
+            solid: self.shells.solid,
+            solid_detail: self.shells.solid_detail,
+            inner: self.shells.inner,
             weld: self.weld.0,
             strict: self.strict,
             ..settings.clone()
@@ -83,9 +105,15 @@ pub fn tell_sealed(place: &Place, parts: &[PartReport]) {
     }
 }
 
+/// Says on standard error what became of the shells that were made one surface.
+pub fn tell_solid(place: &Place, solid: &Solid) {
+    eprintln!("{place}: {}", solid.text());
+}
+
 /// A line for each reason of parts that cannot be done, and one for all that are small.
 pub fn lines(kept: &[Kept], what: &str) -> Vec<String> {
-    let (small, bad): (Vec<_>, Vec<_>) = kept.iter().partition(|kept| kept.is_small());
+    let (bad, others): (Vec<_>, Vec<_>) = kept.iter().partition(|kept| kept.is_bad());
+    let (inner, small): (Vec<_>, Vec<_>) = others.into_iter().partition(|kept| kept.is_inner());
     let reasons = bad.iter().flat_map(|kept| {
         kept.reasons.iter().map(|reason| {
             let [x, y, z] = reason.place.map(rounded);
@@ -105,6 +133,11 @@ pub fn lines(kept: &[Kept], what: &str) -> Vec<String> {
         lines.push(format!("{parts} with {faces} cannot be done: {what}"));
     }
     lines.extend(told_of_small(&small));
+    if !inner.is_empty() {
+        let faces: usize = inner.iter().map(|kept| kept.n_faces).sum();
+        let [parts, faces] = [count(inner.len(), "part"), count(faces, "face")];
+        lines.push(format!("{parts} with {faces} inside others: dropped"));
+    }
     lines
 }
 

@@ -57,6 +57,7 @@ pub mod progress;
 pub mod random;
 pub mod rejoin;
 pub mod score;
+pub mod solid;
 pub mod sparse;
 pub mod sphere;
 pub mod sphere_map;

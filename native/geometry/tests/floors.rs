@@ -12,7 +12,7 @@ const FLOORS: [&[&str]; 5] = [
     &["hierarchy", "measure", "mirror", "nearest", "sphere_map"],
     &[
         "clean", "close", "decimate", "deform", "embed", "flow", "pair", "rejoin", "score",
-        "sphere", "transfer",
+        "solid", "sphere", "transfer",
     ],
     &["pipeline"],
 ];

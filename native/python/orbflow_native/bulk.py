@@ -61,6 +61,9 @@ def remesh(
     fill_size: float | None = None,
     handles: str = "keep",
     seal_size: float = 1.0,
+    solid: bool = False,
+    solid_detail: float = 0.4,
+    inner: str = "keep",
     weld: float | None = 1e-5,
     strict: bool = False,
     predictor: str = "auto",
@@ -101,6 +104,10 @@ def remesh(
     those alone are filled that are no longer than so many percent of the diagonal. Handles stay,
     or are sealed: `handles` is "keep" or "seal", and those are closed for good round which a tight
     loop is no longer than `seal_size`, from 0 to 1000, percent of the diagonal.
+    With `solid` everything becomes one closed surface first: shells that intersect, double walls,
+    cavities, open scraps. A grid does it whose cells measure `solid_detail` percent of the
+    diagonal, from 0.02 to 5; thinner walls and gaps are lost, sheets become thick. Closed parts
+    that lie wholly inside another are parts like others, or go: `inner` is "keep" or "drop".
     Edges of the result that lie on `carried_edges` (E, 2) are told, so that what is marked on
     these can be carried over. `cut_edges` are edges (E, 2) along which data on corners is cut as
     texture coordinates are along seams, a list with a set of them for each way in which data is
@@ -119,7 +126,7 @@ def remesh(
 
     Raises `InputError` when no part of the mesh can be done, `Cancelled` when the token was raised.
     """
-    if reduced is None and is_available():
+    if reduced is None and not solid and is_available():
         reduced = reduce(positions, loop_start, corner_vert, cancel)
     return _core.remesh(
         positions,
@@ -138,6 +145,9 @@ def remesh(
         fill_size=fill_size,
         handles=handles,
         seal_size=seal_size,
+        solid=solid,
+        solid_detail=solid_detail,
+        inner=inner,
         weld=weld,
         strict=strict,
         predictor=predictor,

@@ -67,6 +67,9 @@ pub struct Remeshed {
 /// `fill_size` those alone are that are no longer than so many percent of the diagonal. `handles` is
 /// "keep" or "seal": those are closed for good round which a tight loop is no longer than `seal_size`
 /// percent of the diagonal.
+/// With `solid` everything becomes one closed surface first, by a grid whose cells measure
+/// `solid_detail` percent of the diagonal, 0.02 to 5. Closed parts that lie wholly inside another are
+/// parts like others or go: `inner` is "keep" or "drop".
 /// `predictor` is "auto", "network" or "solver": auto takes the network for maps of 20,000 vertices or
 /// more, else the solver. The network has the wheel's weights, or `weights`: the bytes of a file that
 /// `orbflow train` wrote, or its path. `n_crosses` is how many crosses of the field to tell at most.
@@ -79,8 +82,8 @@ pub struct Remeshed {
 #[pyo3(signature = (
     positions, loop_start, corner_vert, *, faces=2000, kind="quads", primitive=None,
     follow_shape=0.5, adaptivity=0.5, sharp_angle=40.0, mirror="auto", small_parts="keep",
-    small_size=0.0, borders="keep", fill_size=None, handles="keep", seal_size=1.0, weld=1e-5,
-    strict=false, predictor="auto", weights=None, threads=0, seed=0, scale=None, score_samples=10_000, n_crosses=0,
+    small_size=0.0, borders="keep", fill_size=None, handles="keep", seal_size=1.0, solid=false,
+    solid_detail=0.4, inner="keep", weld=1e-5, strict=false, predictor="auto", weights=None, threads=0, seed=0, scale=None, score_samples=10_000, n_crosses=0,
     material_index=None, marked_edges=None, carried_edges=None, cut_edges=None, density=None,
     reduced=None, progress=None, cancel=None,
 ))]
@@ -106,6 +109,9 @@ pub fn remesh<'py>(
     fill_size: Option<f64>,
     handles: &str,
     seal_size: f64,
+    solid: bool,
+    solid_detail: f64,
+    inner: &str,
     weld: Option<f64>,
     strict: bool,
     predictor: &str,
@@ -158,6 +164,9 @@ pub fn remesh<'py>(
         small_size,
         borders: self::borders(borders, fill_size)?,
         handles: self::handles(handles, seal_size)?,
+        solid,
+        solid_detail,
+        inner: report::choice("inner", inner)?,
         weld,
         strict,
         seed,

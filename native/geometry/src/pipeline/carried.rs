@@ -15,7 +15,7 @@ use crate::progress::{Cancelled, Progress};
 use crate::transfer;
 
 /// What became of the edges that were to be carried.
-#[derive(Clone, Copy, PartialEq, Debug, Serialize)]
+#[derive(Clone, Copy, PartialEq, Debug, Default, Serialize)]
 pub struct CarriedReport {
     /// How many edges of the result lie on them.
     pub n_edges: usize,

@@ -5,11 +5,12 @@ use thiserror::Error;
 use super::kept::{Kept, refusal};
 use super::report::Report;
 use super::settings::{Kind, MAX_FACES, MIN_FACES, Primitive};
+use super::solid::SOLID_DETAILS;
 use super::warning::{Warning, grave};
 use crate::close::handles;
 use crate::mesh::VertexId;
 use crate::progress::Cancelled;
-use crate::{clean, close, decimate, deform, embed, flow, pair, sphere};
+use crate::{clean, close, decimate, deform, embed, flow, pair, solid, sphere};
 
 /// Why a run ends without a mesh; nothing was changed.
 #[derive(Debug, Error)]
@@ -84,6 +85,12 @@ pub enum Error {
         /// Why not.
         reason: String,
     },
+    /// The detail of a solid is out of range.
+    #[error("the solid detail is {pct} %; it goes from {} to {}", SOLID_DETAILS[0], SOLID_DETAILS[1])]
+    DetailOutOfRange {
+        /// What was asked for.
+        pct: f64,
+    },
     /// A size is out of range.
     #[error("the {name} is {value}; it goes from 0 to {most}")]
     SizeOutOfRange {
@@ -122,6 +129,9 @@ pub enum Error {
     /// Handles could not be cut.
     #[error(transparent)]
     Cut(handles::Error),
+    /// The shells could not be made one closed surface.
+    #[error(transparent)]
+    Solid(solid::Error),
     /// Decimation failed.
     #[error(transparent)]
     Decimate(decimate::Error),
@@ -176,6 +186,7 @@ lift!(
     clean::Error => Clean,
     close::Error => Close,
     handles::Error => Cut,
+    solid::Error => Solid,
     decimate::Error => Decimate,
     decimate::CollapseError => Collapse,
     embed::Error => Embed,

@@ -74,6 +74,7 @@ impl Made<'_> {
             settings: self.settings.clone(),
             input: measure::topology(self.given.mesh, progress)?,
             clean: self.prepared.report,
+            solid: None,
             output: measure::topology(output, progress)?,
             plane: self.plane,
             embedding: self.joined.embedding,

@@ -74,6 +74,11 @@ pub enum Flaw {
         /// How many different points it has.
         n_points: usize,
     },
+    /// It is closed and lies wholly inside another.
+    Inside {
+        /// Which part that is.
+        of: usize,
+    },
     /// It is too small for its share of the faces, or smaller than was asked for.
     Small {
         /// Its share of the faces, where that is too few.
@@ -90,6 +95,17 @@ impl Kept {
     pub fn is_small(&self) -> bool {
         let is_small = |reason: &Reason| matches!(reason.flaw, Flaw::Small { .. });
         self.reasons.iter().any(is_small)
+    }
+
+    /// Whether it lies inside another and was to go.
+    pub fn is_inner(&self) -> bool {
+        let is_inner = |reason: &Reason| matches!(reason.flaw, Flaw::Inside { .. });
+        self.reasons.iter().any(is_inner)
+    }
+
+    /// Whether something is wrong with it: more than its size or its place.
+    pub fn is_bad(&self) -> bool {
+        !self.is_small() && !self.is_inner()
     }
 
     /// All reasons in words.
@@ -123,7 +139,7 @@ impl Reason {
 
 /// Why no part, or not all of them, can be done, in one line.
 pub fn refusal(kept: &[Kept], n_parts: usize) -> String {
-    let told: Vec<&Kept> = kept.iter().filter(|kept| !kept.is_small()).collect();
+    let told: Vec<&Kept> = kept.iter().filter(|kept| kept.is_bad()).collect();
     // Where all are small, that is the reason.
     let told = if told.is_empty() {
         kept.iter().collect()

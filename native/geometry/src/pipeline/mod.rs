@@ -30,6 +30,7 @@ mod flowed;
 mod frame;
 mod ground;
 mod handles;
+mod inner;
 mod join;
 mod kept;
 mod laid;
@@ -50,6 +51,7 @@ mod settings;
 mod sheets;
 mod sides;
 mod small;
+mod solid;
 mod split;
 mod stay;
 mod uncut;
@@ -67,6 +69,7 @@ pub use error::Error;
 pub use fault::Fault;
 pub use flowed::Flowed;
 pub use handles::Handles;
+pub use inner::Inner;
 pub use kept::{Flaw, Kept, Outcome, Reason};
 pub use laid::Instead;
 pub use mirror::{Mirror, Plane, Through};
@@ -75,6 +78,7 @@ pub use report::{Mirrored, PartReport, Reduced, Rejoined, Report};
 pub use scored::score;
 pub use settings::{Kind, MAX_FACES, MIN_FACES, Primitive, Settings, Style};
 pub use small::{MAX_WELD, SmallParts};
+pub use solid::{SOLID_DETAIL, SOLID_DETAILS, Solid};
 pub use verbs::{Decimated, EmbedReport, EmbeddedParts, decimate, embed};
 pub use warning::Warning;
 
@@ -187,7 +191,19 @@ fn run(
     predictor: &dyn OffsetPredictor,
     progress: &Progress<'_>,
 ) -> Result<Remeshed, Error> {
-    let mut clock = Clock::default();
+    if settings.solid {
+        return solid::run(given, settings, predictor, progress);
+    }
+    shells((given, Clock::default()), settings, predictor, progress)
+}
+
+/// Every part of a mesh as it is.
+fn shells(
+    (given, mut clock): (Input<'_>, Clock),
+    settings: &Settings,
+    predictor: &dyn OffsetPredictor,
+    progress: &Progress<'_>,
+) -> Result<Remeshed, Error> {
     let stage = progress.part("clean", 0.0, 0.02);
     let apart = || taken_apart(given.mesh, settings.weld, &stage);
     let (apart, moved) = clock.step("clean", apart)?;

@@ -9,6 +9,7 @@ use super::flowed::Flowed;
 use super::kept::Kept;
 use super::mirror::Plane;
 use super::settings::Settings;
+use super::solid::Solid;
 use super::warning::Warning;
 use crate::measure::Topology;
 use crate::score::Score;
@@ -25,6 +26,8 @@ pub struct Report {
     pub input: Topology,
     /// What had to be mended in it.
     pub clean: clean::Report,
+    /// How it became one closed surface; none where that was not asked for.
+    pub solid: Option<Solid>,
     /// The mesh that went out.
     pub output: Topology,
     /// The plane of symmetry; none when none was asked for or there is none.

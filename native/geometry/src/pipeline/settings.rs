@@ -5,8 +5,10 @@ use serde::{Deserialize, Serialize};
 use super::Error;
 use super::borders::Borders;
 use super::handles::Handles;
+use super::inner::Inner;
 use super::mirror::Mirror;
 use super::small::SmallParts;
+use super::solid::SOLID_DETAIL;
 use crate::elementary::powf;
 use crate::{clean, flow, score};
 
@@ -162,6 +164,12 @@ pub struct Settings {
     pub borders: Borders,
     /// What becomes of handles.
     pub handles: Handles,
+    /// Whether everything becomes one closed surface first.
+    pub solid: bool,
+    /// The size of the cells of the grid that does it, in percent of the diagonal, from 0.02 to 5.
+    pub solid_detail: f64,
+    /// What becomes of closed parts that lie wholly inside another.
+    pub inner: Inner,
     /// Whether a part that cannot be done, and is not merely small, ends the run.
     pub strict: bool,
     /// Where the adaptive primitive's samples start; equal seeds give equal bytes.
@@ -189,6 +197,9 @@ impl Default for Settings {
             weld: Some(clean::WELD),
             borders: Borders::default(),
             handles: Handles::default(),
+            solid: false,
+            solid_detail: SOLID_DETAIL,
+            inner: Inner::default(),
             strict: false,
             seed: 0,
             threads: 0,
@@ -246,6 +257,7 @@ impl Settings {
         self.check_sizes()?;
         self.check_borders()?;
         self.check_handles()?;
+        self.check_solid()?;
         let degrees = self.sharp_angle;
         if !(0.0..=180.0).contains(&degrees) {
             return Err(Error::AngleOutOfRange { degrees });

@@ -11,7 +11,7 @@ use super::density::Density;
 use super::frame::{Frame, bits};
 use super::kept::{Flaw, Kept, Outcome, Reason};
 use super::stay::some_faces;
-use super::{Error, Input, Settings, diagnosis, small};
+use super::{Error, Inner, Input, Settings, diagnosis, inner, small};
 use crate::clean::{Apart, Cleaned, SharedLine, SharedPoint};
 use crate::mesh::{FaceId, FaceMap, PolygonMesh, TriangleMesh, VertexId, VertexMap, bounds};
 use crate::progress::{Cancelled, Progress};
@@ -76,6 +76,9 @@ impl Parts {
             (&component, n),
         );
         progress.check()?;
+        if parts.len() > 1 && settings.inner == Inner::Drop {
+            inner::mark(&mut parts, (input.mesh, &apart.mesh), progress)?;
+        }
         if parts.len() > 1 {
             let amounts = amounts(input, &apart.mesh, progress)?;
             small::mark(&mut parts, input.mesh, &amounts, settings);
@@ -152,8 +155,7 @@ impl Parts {
 
     /// Whether what is done is enough.
     fn check(&mut self, settings: &Settings) -> Result<(), Error> {
-        let is_bad = |kept: &Kept| !kept.is_small();
-        if self.names.is_empty() || settings.strict && self.kept.iter().any(is_bad) {
+        if self.names.is_empty() || settings.strict && self.kept.iter().any(Kept::is_bad) {
             return Err(Error::Refused {
                 kept: std::mem::take(&mut self.kept),
                 n_parts: self.n,
@@ -294,6 +296,9 @@ fn kept(part: usize, of: Part, settings: &Settings) -> Kept {
     };
     if kept.is_small() {
         kept.outcome = settings.small_parts.outcome();
+    }
+    if kept.is_inner() {
+        kept.outcome = Outcome::Dropped;
     }
     kept
 }
