@@ -18,12 +18,14 @@
 //! | `reopen` | which quads are kept |
 //! | `puncture` | how short borders are opened |
 //! | `weld` | how cut handles are joined again |
+//! | `mend` | how inverted quads are opened in the end |
 
 mod closing;
 mod filling;
 mod firm;
 mod hold;
 mod loops;
+mod mend;
 mod puncture;
 mod reopen;
 mod sheet;
