@@ -1,6 +1,7 @@
 //! The mesh while its borders are closed, one after the other.
 
 use std::collections::HashSet;
+use std::ops::Range;
 
 use glam::DVec3;
 
@@ -12,6 +13,12 @@ use super::start;
 use crate::mesh::{HalfedgeId, Id, TriangleMesh, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
 
+/// A loop has a tube if its area is no less than this share of the square of its length: a circle has
+/// 0.16, a slit none.
+const LEAST_OPEN: f64 = 0.01;
+/// A tube has this many rows of faces at most.
+const MOST_ROWS: usize = 8;
+
 /// No place in a loop.
 const NONE: u32 = u32::MAX;
 
@@ -22,6 +29,8 @@ pub struct Sheet<'a> {
     pub faces: Vec<[VertexId; 3]>,
     /// How many faces are real: those that were given and those that fill borders for good.
     pub n_real: usize,
+    /// Which faces are tubes between loops and their caps.
+    pub tubes: Vec<Range<usize>>,
     /// The place of each vertex in the loop that is being closed.
     places: VertexMap<u32>,
 }
@@ -33,6 +42,7 @@ impl<'a> Sheet<'a> {
             positions: mesh.positions().to_vec(),
             faces: mesh.faces().to_vec(),
             n_real: mesh.n_faces(),
+            tubes: Vec::new(),
             places: VertexMap::filled(mesh.n_vertices(), NONE),
         }
     }
@@ -42,17 +52,26 @@ impl<'a> Sheet<'a> {
         [self.mesh.origin(h), self.mesh.target(h)]
     }
 
-    /// Closes a loop by a membrane.
-    pub fn cap(&mut self, border: &[HalfedgeId], progress: &Progress) -> Result<(), Cancelled> {
+    /// Closes a loop by a membrane, at the end of a tube of some length.
+    pub fn cap(
+        &mut self,
+        (border, tube): (&[HalfedgeId], f64),
+        progress: &Progress,
+    ) -> Result<(), Cancelled> {
         // The faces beyond an edge run through it the other way.
         let ring = border.iter().rev().map(|&h| self.mesh.origin(h));
         let ring: Vec<VertexId> = ring.collect();
-        let points: Vec<DVec3> = ring.iter().map(|&v| self.mesh.position(v)).collect();
+        let chords = self.chords(&ring);
+        let (ring, chords) = match self.end_of_tube(&ring, tube) {
+            Some(end) => (end, HashSet::new()),
+            None => (ring, chords),
+        };
+        let points: Vec<DVec3> = ring.iter().map(|v| self.positions[v.index()]).collect();
         let frame = Frame::of(&points);
         let points: Vec<DVec3> = points.into_iter().map(|p| frame.inside(p)).collect();
         progress.check()?;
-        let mut patch = Patch::new(&points, &start::triangles(&points), self.chords(&ring));
-        if self.mesh.n_faces() == 1 {
+        let mut patch = Patch::new(&points, &start::triangles(&points), chords);
+        if self.mesh.n_faces() == 1 && tube == 0.0 {
             let [a, b, c] = [0, 1, 2].map(|i| points[i]);
             patch.split_face(0, (a + b + c) / 3.0);
         }
@@ -66,6 +85,43 @@ impl<'a> Sheet<'a> {
         };
         self.faces.extend(patch.faces().map(|face| face.map(name)));
         Ok(())
+    }
+
+    /// Adds a tube that goes on from a loop across it, and returns its other end; none where it has no
+    /// length or the loop encloses nothing.
+    fn end_of_tube(&mut self, ring: &[VertexId], length: f64) -> Option<Vec<VertexId>> {
+        let points: Vec<DVec3> = ring.iter().map(|v| self.positions[v.index()]).collect();
+        let middle = points.iter().sum::<DVec3>() / points.len() as f64;
+        let next = |i: usize| (i + 1) % points.len();
+        let sides = 0..points.len();
+        let across = sides.map(|i| (points[i] - middle).cross(points[next(i)] - middle));
+        let across: DVec3 = across.sum();
+        let round: f64 = (0..points.len())
+            .map(|i| points[i].distance(points[next(i)]))
+            .sum();
+        if length <= 0.0 || across.length() < LEAST_OPEN * round * round {
+            return None;
+        }
+        let rows = length * points.len() as f64 / round;
+        let n_rows = (rows.round() as usize).clamp(1, MOST_ROWS);
+        let step = across.normalize_or_zero() * (length / n_rows as f64);
+        let first = self.faces.len();
+        let mut last = ring.to_vec();
+        for row in 1..=n_rows {
+            let start = self.positions.len();
+            let moved = points.iter().map(|p| p + step * row as f64);
+            self.positions.extend(moved);
+            let end: Vec<VertexId> = (start..self.positions.len())
+                .map(VertexId::from_index)
+                .collect();
+            for i in 0..points.len() {
+                let [a, b, c, d] = [last[i], last[next(i)], end[next(i)], end[i]];
+                self.faces.extend([[a, b, c], [a, c, d]]);
+            }
+            last = end;
+        }
+        self.tubes.push(first..self.faces.len());
+        Some(last)
     }
 
     /// The pairs of places in a loop that an inner edge of the mesh joins.

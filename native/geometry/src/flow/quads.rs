@@ -160,7 +160,41 @@ fn search(
         }
         from = to;
     }
-    let laid = lay_plan(last, &progress.part("", from, 1.0))?;
+    let laid = lay_plan(last, &progress.part("", from, 1.0));
+    if std::env::var("FIRM_DEBUG").is_ok() {
+        match &laid {
+            Ok(laid) => {
+                for (line, is_met) in last.lines().zip(&laid.is_met) {
+                    let length: f64 = line.length_of(mesh, |_| true);
+                    let edge = (crate::measure::total_area(mesh) / settings.n_quads as f64).sqrt();
+                    eprintln!(
+                        "line firm {} met {} length {:.1} closed {} real left {:?} at {:?} indices {:?}",
+                        line.is_firm,
+                        is_met,
+                        length / edge,
+                        line.ends[0] == line.ends[1],
+                        has_real_left(mesh, guides, line.halfedges[0]),
+                        mesh.position(line.ends[0]),
+                        line.ends.map(|v| dressed.field.indices[v])
+                    );
+                }
+                eprintln!(
+                    "cones {} quads {} score {:?} stuck {}",
+                    dressed.field.indices.iter().filter(|i| **i != 0).count(),
+                    laid.quads.len(),
+                    laid.report.score,
+                    laid.report.n_stuck
+                );
+            }
+            Err(e) => eprintln!(
+                "no grid: {e}; lines {:?}",
+                last.lines()
+                    .map(|l| (l.halfedges.len(), l.is_firm))
+                    .collect::<Vec<_>>()
+            ),
+        }
+    }
+    let laid = laid?;
     match unmet(last, &laid) {
         0 => Ok(laid),
         n_unmet => Err(Error::Creases {
@@ -205,12 +239,22 @@ fn whole(
         let firm = firm.map(|(i, line)| FirmLine {
             line: i,
             ends: line.kept_ends(&complex),
+            has_real_left: has_real_left(mesh, guides, line.halfedges[0]),
         });
         complex.chains.firm = firm.collect();
+        let real = guides.firm.and_then(|firm| firm.real.as_ref());
+        complex.chains.n_real = real.map(|real| [real.n_quads, settings.n_quads]);
     }
     let whole = quantise(complex, settings.n_quads, &search, &part)?;
     check(&whole, (settings, plan.is_firm()))?;
     Ok(whole)
+}
+
+/// Whether what counts lies on the left of an edge, where it parts that from what does not.
+fn has_real_left(mesh: &TriangleMesh, guides: Guides<'_>, h: HalfedgeId) -> Option<bool> {
+    let real = &guides.firm?.real.as_ref()?.is_real;
+    let [left, right] = [h, mesh.twin(h)?].map(|h| real[h.face()]);
+    (left != right).then_some(left)
 }
 
 /// The lines of a plan along twin loops of edges, for each two of them.
@@ -242,7 +286,7 @@ fn check(whole: &Quantised, (settings, is_firm): (&Settings, bool)) -> Result<()
     if n_doubled > 0 {
         return Err(Error::Doubled { n_doubled });
     }
-    let [n_quads, n_wanted] = [whole.grid.quads.len(), settings.n_quads];
+    let [n_quads, n_wanted] = [whole.grid.quads.len(), whole.n_wanted];
     let tolerance = if is_firm {
         (n_wanted / SLACK).max(SLACK_OF_FEW.saturating_sub(n_wanted / 2))
     } else {

@@ -34,6 +34,8 @@ pub struct FirmLine {
     pub line: usize,
     /// The vertices at its ends.
     pub ends: [u32; 2],
+    /// Whether what counts lies on its left, where it parts that from what does not.
+    pub has_real_left: Option<bool>,
 }
 
 /// Lines as sums over halfedges; none unless a complex was told to follow some.
@@ -44,6 +46,8 @@ pub struct Chains {
     pub ties: Vec<Tie>,
     /// The lines that have to be met, in order.
     pub firm: Vec<FirmLine>,
+    /// How many quads are wanted on what counts, and about how many in all, where not all do.
+    pub n_real: Option<[usize; 2]>,
     /// Closed loops of lines that shall be equally long, two and two.
     pub twins: Vec<[Vec<usize>; 2]>,
     /// The terms of each halfedge in the order of the lines; an edge's may be on either side.
@@ -136,6 +140,7 @@ impl Complex {
             ties: Vec::new(),
             twins: Vec::new(),
             firm: Vec::new(),
+            n_real: None,
             terms: vec![Vec::new(); self.twins.len()],
         };
         for (i, line) in lines.iter().enumerate() {

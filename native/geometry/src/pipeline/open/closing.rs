@@ -18,6 +18,10 @@ use crate::pipeline::even::Marked;
 use crate::pipeline::{Error, Settings};
 use crate::progress::{Cancelled, Progress};
 
+/// How long the tubes between borders and their caps are, in edges of quads: so there is room for the
+/// four singularities of a cap, and its corners are none of quads.
+const TUBE: f64 = 1.5;
+
 /// A part that was closed.
 pub struct Closing {
     /// The part, open and without handles.
@@ -33,6 +37,8 @@ pub struct Closing {
     pub(super) told: Option<Opened>,
     /// Borders up to this length are filled for good.
     pub(super) asked: f64,
+    /// How long the tubes are between the others and their caps.
+    tube: f64,
 }
 
 /// A part reduced to the size of the map and closed.
@@ -89,7 +95,8 @@ impl Closing {
             .collect();
         let settings = close::Settings {
             fill: close::Fill::UpTo(limits.closed()),
-            ..close::Settings::default()
+            way: close::Way::Measured,
+            tube: std::env::var("TUBE").map_or(TUBE, |x| x.parse().unwrap()) * edge,
         };
         let closed = close::close(&cut.mesh, &settings, progress)?;
         let cuts = cut.twins.iter().map(|[one, _]| polyline(&cut.mesh, one));
@@ -103,6 +110,7 @@ impl Closing {
             },
             told: Opened::new([shape.n_borders, n_filled], closed.n_doubled > 0),
             asked: limits.filled(),
+            tube: settings.tube,
             closed,
             open: cut.mesh,
         }))
@@ -163,17 +171,22 @@ impl Closing {
             0 => close::Way::Cap,
             _ => close::Way::Double,
         };
-        close::Settings { fill, way }
+        close::Settings {
+            fill,
+            way,
+            tube: self.tube,
+        }
     }
 
-    /// What the quads have to keep to, and what of them is kept.
+    /// What the quads have to keep to, and what of them is kept; so many are wanted on all of it, and
+    /// on what is real.
     ///
     /// # Errors
     /// When cancelled.
     pub fn opening(
         self,
         small: &Small,
-        n_faces: usize,
+        [n_faces, n_asked]: [usize; 2],
         progress: &Progress<'_>,
     ) -> Result<Opening, Cancelled> {
         let mesh = &self.closed.mesh;
@@ -204,6 +217,7 @@ impl Closing {
             cuts: self.cuts,
             punctures: self.punctures,
             wanted: self.wanted,
+            n_asked,
             is_real: self.closed.is_real,
         })
     }
