@@ -10,12 +10,15 @@ use super::membrane::refine;
 use super::patch::Patch;
 use super::split::key;
 use super::start;
+use crate::measure::area_vector;
 use crate::mesh::{HalfedgeId, Id, TriangleMesh, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
 
 /// A loop has a tube if its area is no less than this share of the square of its length: a circle has
 /// 0.16, a slit none.
 const LEAST_OPEN: f64 = 0.01;
+/// How often the ways of a tube are smoothed along its loop.
+const N_SMOOTHINGS: usize = 3;
 /// A tube has this many rows of faces at most.
 const MOST_ROWS: usize = 8;
 
@@ -91,25 +94,23 @@ impl<'a> Sheet<'a> {
     /// length or the loop encloses nothing.
     fn end_of_tube(&mut self, ring: &[VertexId], length: f64) -> Option<Vec<VertexId>> {
         let points: Vec<DVec3> = ring.iter().map(|v| self.positions[v.index()]).collect();
-        let middle = points.iter().sum::<DVec3>() / points.len() as f64;
         let next = |i: usize| (i + 1) % points.len();
-        let sides = 0..points.len();
-        let across = sides.map(|i| (points[i] - middle).cross(points[next(i)] - middle));
-        let across: DVec3 = across.sum();
         let round: f64 = (0..points.len())
             .map(|i| points[i].distance(points[next(i)]))
             .sum();
-        if length <= 0.0 || across.length() < LEAST_OPEN * round * round {
+        if length <= 0.0 {
             return None;
         }
+        let ways = self.ways_across(ring, &points)?;
         let rows = length * points.len() as f64 / round;
         let n_rows = (rows.round() as usize).clamp(1, MOST_ROWS);
-        let step = across.normalize_or_zero() * (length / n_rows as f64);
+        let step = length / n_rows as f64;
         let first = self.faces.len();
         let mut last = ring.to_vec();
         for row in 1..=n_rows {
             let start = self.positions.len();
-            let moved = points.iter().map(|p| p + step * row as f64);
+            let moved = points.iter().zip(&ways);
+            let moved = moved.map(|(p, way)| p + way * (step * row as f64));
             self.positions.extend(moved);
             let end: Vec<VertexId> = (start..self.positions.len())
                 .map(VertexId::from_index)
@@ -122,6 +123,37 @@ impl<'a> Sheet<'a> {
         }
         self.tubes.push(first..self.faces.len());
         Some(last)
+    }
+
+    /// Which way a tube goes on from each vertex of a loop: across the loop, but where it runs that way
+    /// itself, as along a slit, across the surface. None where the loop encloses nothing.
+    fn ways_across(&self, ring: &[VertexId], points: &[DVec3]) -> Option<Vec<DVec3>> {
+        let n = points.len();
+        let middle = points.iter().sum::<DVec3>() / n as f64;
+        let sides = (0..n).map(|i| [points[i], points[(i + 1) % n]]);
+        let round: f64 = sides.clone().map(|[a, b]| a.distance(b)).sum();
+        let across: DVec3 = sides.map(|[a, b]| (a - middle).cross(b - middle)).sum();
+        if across.length() < LEAST_OPEN * round * round {
+            return None;
+        }
+        let across = across.normalize_or_zero();
+        let way = |i: usize| {
+            let along = (points[(i + 1) % n] - points[(i + n - 1) % n]).normalize_or_zero();
+            let aside = across - along * across.dot(along);
+            let faces = self.mesh.outgoing(ring[i]).map(HalfedgeId::face);
+            let normal: DVec3 = faces.map(|f| area_vector(self.mesh.triangle(f))).sum();
+            aside + normal.normalize_or_zero() * (1.0 - aside.length())
+        };
+        let mut ways: Vec<DVec3> = (0..n).map(way).collect();
+        for _ in 0..N_SMOOTHINGS {
+            let mean = |i: usize| ways[(i + n - 1) % n] + 2.0 * ways[i] + ways[(i + 1) % n];
+            ways = (0..n).map(|i| mean(i) / 4.0).collect();
+        }
+        Some(
+            ways.into_iter()
+                .map(|way| way.try_normalize().unwrap_or(across))
+                .collect(),
+        )
     }
 
     /// The pairs of places in a loop that an inner edge of the mesh joins.

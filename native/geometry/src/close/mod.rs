@@ -27,6 +27,7 @@ mod start;
 use cap::Sheet;
 use frame::Frame;
 
+use crate::measure::Polyline;
 use crate::mesh::{
     FaceMap, HalfedgeId, HalfedgeMap, Id, TriangleMesh, TriangleMeshError, VertexId,
 };
@@ -41,6 +42,8 @@ pub struct Settings {
     pub way: Way,
     /// How long a tube is that lies between each of them and its cap.
     pub tube: f64,
+    /// Lines along which loops get none.
+    pub flush: Vec<Polyline>,
 }
 
 /// What is done with the longest border that is not filled; the others get caps in any case.
@@ -54,6 +57,23 @@ pub enum Way {
     /// The mesh is doubled across it. A single triangle gets a cap: its image would have the same
     /// three corners.
     Double,
+}
+
+/// A loop lies along a line if it is nowhere farther from it than this share of a tube's length.
+const ALONG: f64 = 0.2;
+
+impl Settings {
+    /// How long the tube of a loop is.
+    fn tube_at(&self, mesh: &TriangleMesh, border: &[HalfedgeId]) -> f64 {
+        let near = ALONG * self.tube;
+        let places = || border.iter().map(|&h| mesh.position(mesh.origin(h)));
+        let is_along = |line: &Polyline| places().all(|p| line.distance(p) <= near);
+        if self.flush.iter().any(is_along) {
+            0.0
+        } else {
+            self.tube
+        }
+    }
 }
 
 /// Which borders are closed for good: their caps count as real faces.
@@ -134,19 +154,19 @@ pub fn close(
     let loops = mesh.border_loops();
     check(mesh, loops.len())?;
     let mut sheet = Sheet::new(mesh);
-    let [flush, away] = [0.0, settings.tube];
+    let tube = |border: &[HalfedgeId]| settings.tube_at(mesh, border);
     let (filled, mut open): (Vec<_>, Vec<_>) = loops
         .into_iter()
         .partition(|border| is_filled(mesh, border, settings.fill));
     for (i, border) in filled.iter().enumerate() {
         progress.at(0.3 * i as f64 / filled.len() as f64)?;
-        sheet.cap((border, flush), progress)?;
+        sheet.cap((border, 0.0), progress)?;
     }
     sheet.n_real = sheet.faces.len();
     let longest = take_longest(mesh, &mut open);
     for (i, border) in open.iter().enumerate() {
         progress.at(0.3 + 0.3 * i as f64 / open.len() as f64)?;
-        sheet.cap((border, away), progress)?;
+        sheet.cap((border, tube(border)), progress)?;
     }
     let mut n_capped = open.len();
     let mut n_doubled = 0;
@@ -156,7 +176,7 @@ pub fn close(
             sheet.double(&border, progress)?;
             n_doubled = 1;
         } else {
-            sheet.cap((&border, away), progress)?;
+            sheet.cap((&border, tube(&border)), progress)?;
             n_capped += 1;
         }
     }

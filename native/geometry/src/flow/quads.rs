@@ -3,13 +3,13 @@
 use glam::{DVec2, DVec3};
 use serde::Serialize;
 
-use super::complex::FirmLine;
+use super::complex::{Counted, FirmLine};
 use super::cones::keep_cones;
 use super::conformal::flatten;
 use super::dress::{Dressed, dress};
 use super::error::Error;
 use super::field::OrientationField;
-use super::guides::Guides;
+use super::guides::{Guides, Real};
 use super::laid::{Laid, lay};
 use super::mirror::Plan;
 use super::search::{Quantised, Score, quantise};
@@ -173,7 +173,11 @@ fn search(
                         is_met,
                         length / edge,
                         line.ends[0] == line.ends[1],
-                        has_real_left(mesh, guides, line.halfedges[0]),
+                        is_border(
+                            mesh,
+                            guides.firm.and_then(|firm| firm.real.as_ref()),
+                            line.halfedges[0]
+                        ),
                         mesh.position(line.ends[0]),
                         line.ends.map(|v| dressed.field.indices[v])
                     );
@@ -235,26 +239,39 @@ fn whole(
         if settings.creases == Creases::All {
             search.weights.count = COUNT_OF_SOLIDS;
         }
+        let real = guides.firm.and_then(|firm| firm.real.as_ref());
         let firm = plan.lines().enumerate().filter(|(_, line)| line.is_firm);
         let firm = firm.map(|(i, line)| FirmLine {
             line: i,
             ends: line.kept_ends(&complex),
-            has_real_left: has_real_left(mesh, guides, line.halfedges[0]),
+            is_border: is_border(mesh, real, line.halfedges[0]),
         });
         complex.chains.firm = firm.collect();
-        let real = guides.firm.and_then(|firm| firm.real.as_ref());
-        complex.chains.n_real = real.map(|real| [real.n_quads, settings.n_quads]);
+        let counted = real.map(|real| counted(mesh, real, &complex.original));
+        complex.chains.counted = counted.unwrap_or_default();
     }
     let whole = quantise(complex, settings.n_quads, &search, &part)?;
     check(&whole, (settings, plan.is_firm()))?;
     Ok(whole)
 }
 
-/// Whether what counts lies on the left of an edge, where it parts that from what does not.
-fn has_real_left(mesh: &TriangleMesh, guides: Guides<'_>, h: HalfedgeId) -> Option<bool> {
-    let real = &guides.firm?.real.as_ref()?.is_real;
-    let [left, right] = [h, mesh.twin(h)?].map(|h| real[h.face()]);
-    (left != right).then_some(left)
+/// Whether an edge parts what counts from what does not.
+fn is_border(mesh: &TriangleMesh, real: Option<&Real>, h: HalfedgeId) -> bool {
+    let is_real = |h: HalfedgeId| real.is_some_and(|real| real.is_real[h.face()]);
+    mesh.twin(h).is_some_and(|twin| is_real(h) != is_real(twin))
+}
+
+/// What of a surface counts, by the vertices that were kept of it.
+fn counted(mesh: &TriangleMesh, real: &Real, kept: &[VertexId]) -> Counted {
+    let side = |&v: &VertexId| {
+        let mut sides = mesh.outgoing(v).map(|h| real.is_real[h.face()]);
+        let first = sides.next()?;
+        sides.all(|side| side == first).then_some(first)
+    };
+    Counted {
+        n_wanted: Some(real.n_quads),
+        is_real: kept.iter().map(side).collect(),
+    }
 }
 
 /// The lines of a plan along twin loops of edges, for each two of them.

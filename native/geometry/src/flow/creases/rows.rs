@@ -1,11 +1,10 @@
 //! Lines as linear equations on the periods.
 
-use std::collections::HashMap;
-
 use glam::{DVec2, IVec2};
 
 use super::seams::Walker;
-use crate::flow::complex::{Complex, FirmLine, Tie, Turn};
+use super::sides::Sides;
+use crate::flow::complex::{Complex, Counted, FirmLine, Tie, Turn};
 use crate::flow::periods::{Part, real_row};
 use crate::flow::rings::off_axis;
 
@@ -92,8 +91,7 @@ fn row(complex: &Complex, line: usize) -> Option<Row> {
 /// Firm lines as sums of periods, to tell in how many a grid has no straight way between the ends.
 pub struct Firm {
     lines: Vec<(Vec<IVec2>, FirmLine)>,
-    /// How many quads are wanted on what counts, and about how many in all, where not all do.
-    n_real: Option<[usize; 2]>,
+    counted: Counted,
 }
 
 /// What a grid tells of firm lines.
@@ -112,7 +110,7 @@ impl Firm {
             lines: lines
                 .map(|firm| (complex.coefficients_along(firm.line), *firm))
                 .collect(),
-            n_real: complex.chains.n_real,
+            counted: complex.chains.counted.clone(),
         }
     }
 
@@ -133,82 +131,20 @@ impl Firm {
         let ends = self.lines.iter().map(|(_, firm)| firm.ends);
         let walker = Walker::new(quads, n_vertices).stopping_at(ends);
         let periods = periods.as_chunks::<2>().0;
-        let mut sides = Sides::default();
+        let mut borders = Vec::new();
         for (coefficients, firm) in &self.lines {
             let span = coefficients.iter().zip(periods);
             let span: DVec2 = span.map(|(c, &x)| c.as_dvec2().rotate(x.into())).sum();
-            match walker.along(span, firm.ends).first() {
-                Some(walk) => sides.part(walk, firm.has_real_left),
-                None => told.n_unmet += 1,
+            let walks = walker.along(span, firm.ends);
+            told.n_unmet += usize::from(walks.is_empty());
+            if firm.is_border {
+                borders.push(walks);
             }
         }
-        if let Some([n_wanted, n_all]) = self.n_real.filter(|_| told.n_unmet == 0) {
-            let n_real = sides.n_real(quads, n_wanted as f64 / n_all as f64);
+        if let Some(n_wanted) = self.counted.n_wanted.filter(|_| told.n_unmet == 0) {
+            let n_real = Sides::new(quads, &self.counted.is_real).n_real(&borders);
             told.growth = (n_real > 0).then(|| n_wanted as f64 / n_real as f64);
         }
         told
-    }
-}
-
-/// Ways in a grid that part the quads that count from the others.
-#[derive(Default)]
-struct Sides {
-    /// Their edges, in both directions, and whether quads on the left of each count, where that is
-    /// known.
-    edges: HashMap<[u32; 2], Option<bool>>,
-}
-
-impl Sides {
-    /// Adds a way that has what counts on its left, or on its right, or does not part it.
-    fn part(&mut self, walk: &[u32], has_real_left: Option<bool>) {
-        let Some(is_real) = has_real_left else {
-            return;
-        };
-        // Round a closed line either direction arrives.
-        let is_open = walk.first() != walk.last();
-        for pair in walk.windows(2) {
-            let left = is_open.then_some(is_real);
-            self.edges.insert([pair[0], pair[1]], left);
-            self.edges.insert([pair[1], pair[0]], left.map(|is| !is));
-        }
-    }
-
-    /// How many quads count; where nothing else tells, about such a share of all.
-    fn n_real(&self, quads: &[[u32; 4]], share: f64) -> usize {
-        let edges = |quad: &[u32; 4]| [0, 1, 2, 3].map(|i| [quad[i], quad[(i + 1) % 4]]);
-        let mut left: HashMap<[u32; 2], usize> = HashMap::with_capacity(4 * quads.len());
-        for (i, quad) in quads.iter().enumerate() {
-            left.extend(edges(quad).map(|edge| (edge, i)));
-        }
-        // Beyond every edge of the ways is the other kind.
-        let mut colours: Vec<Option<bool>> = vec![None; quads.len()];
-        colours[0] = Some(true);
-        let mut open = vec![0];
-        let mut votes = 0_i64;
-        let mut n_first = 0;
-        while let Some(i) = open.pop() {
-            let own = colours[i] == Some(true);
-            n_first += usize::from(own);
-            for [a, b] in edges(&quads[i]) {
-                let way = self.edges.get(&[a, b]);
-                if let Some(Some(is_real)) = way {
-                    votes += if *is_real == own { 1 } else { -1 };
-                }
-                let Some(&beyond) = left.get(&[b, a]) else {
-                    continue;
-                };
-                if colours[beyond].is_none() {
-                    colours[beyond] = Some(own != way.is_some());
-                    open.push(beyond);
-                }
-            }
-        }
-        let n_other = quads.len() - n_first;
-        let off = |n: usize| (n as f64 / quads.len() as f64 - share).abs();
-        if votes > 0 || (votes == 0 && off(n_first) <= off(n_other)) {
-            n_first
-        } else {
-            n_other
-        }
     }
 }

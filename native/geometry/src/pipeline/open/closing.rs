@@ -93,15 +93,17 @@ impl Closing {
             .filter(|border| limits.is_puncture(border.length()))
             .map(|border| Puncture::new(border, edge))
             .collect();
+        let cuts = cut.twins.iter().map(|[one, _]| polyline(&cut.mesh, one));
+        let cuts: Vec<Polyline> = cuts.collect();
         let settings = close::Settings {
             fill: close::Fill::UpTo(limits.closed()),
             way: close::Way::Measured,
             tube: std::env::var("TUBE").map_or(TUBE, |x| x.parse().unwrap()) * edge,
+            flush: cuts.clone(),
         };
         let closed = close::close(&cut.mesh, &settings, progress)?;
-        let cuts = cut.twins.iter().map(|[one, _]| polyline(&cut.mesh, one));
         Ok(Some(Self {
-            cuts: cuts.collect(),
+            cuts,
             punctures,
             wanted: Topology {
                 n_borders,
@@ -175,6 +177,7 @@ impl Closing {
             fill,
             way,
             tube: self.tube,
+            flush: self.cuts.clone(),
         }
     }
 

@@ -9,6 +9,9 @@ use crate::mesh::{HalfedgeId, HalfedgeMap, Id, TriangleMesh, VertexId};
 /// A border has a corner where it turns by more than this from one half of an edge of a quad to the
 /// next (50°).
 const CORNER: f64 = 0.87;
+/// Two corners nearer to each other than this many edges that turn opposite ways are a step too low
+/// for a quad, and none.
+const STEP: f64 = 1.0;
 /// How far it is looked to either side, in edges of quads.
 const REACH: f64 = 0.5;
 /// But no farther than this share of the loop.
@@ -136,6 +139,7 @@ struct Bends {
     /// The length up to each point, and that of the whole.
     lengths: Vec<f64>,
     reach: f64,
+    edge: f64,
 }
 
 impl Bends {
@@ -151,6 +155,7 @@ impl Bends {
             points,
             lengths,
             reach: (REACH * edge).min(MOST_OF_LOOP * whole),
+            edge,
         }
     }
 
@@ -175,9 +180,21 @@ impl Bends {
         )
     }
 
-    fn turn(&self, i: usize) -> f64 {
+    /// The ways up to a point and from it on.
+    fn ways(&self, i: usize) -> [DVec3; 2] {
         let [before, after] = [-self.reach, self.reach].map(|d| self.at(self.lengths[i] + d));
-        angle_between(self.points[i] - before, after - self.points[i])
+        [self.points[i] - before, after - self.points[i]]
+    }
+
+    fn turn(&self, i: usize) -> f64 {
+        let [before, after] = self.ways(i);
+        angle_between(before, after)
+    }
+
+    /// What it turns about at a point.
+    fn axis(&self, i: usize) -> DVec3 {
+        let [before, after] = self.ways(i);
+        before.cross(after)
     }
 
     /// The points that turn most within reach, of those that turn by more than a corner does.
@@ -198,7 +215,19 @@ impl Bends {
             }
         }
         taken.sort_unstable();
-        taken.into_iter().map(|i| self.points[i]).collect()
+        let n_taken = taken.len();
+        let is_step = |a: usize, b: usize| {
+            let [one, other] = [taken[a], taken[b]];
+            a != b
+                && away(one, other) < STEP * self.edge
+                && self.axis(one).dot(self.axis(other)) < 0.0
+        };
+        let stays = |&a: &usize| {
+            let beside = [(a + n_taken - 1) % n_taken, (a + 1) % n_taken];
+            !beside.into_iter().any(|b| is_step(a, b))
+        };
+        let left = (0..n_taken).filter(stays);
+        left.map(|a| self.points[taken[a]]).collect()
     }
 }
 
