@@ -23,11 +23,12 @@ mod membrane;
 mod patch;
 mod split;
 mod start;
+mod tube;
 
 use cap::Sheet;
 use frame::Frame;
+pub use tube::Tubes;
 
-use crate::measure::Polyline;
 use crate::mesh::{
     FaceMap, HalfedgeId, HalfedgeMap, Id, TriangleMesh, TriangleMeshError, VertexId,
 };
@@ -40,10 +41,8 @@ pub struct Settings {
     pub fill: Fill,
     /// What is done with the longest of the other borders.
     pub way: Way,
-    /// How long a tube is that lies between each of them and its cap.
-    pub tube: f64,
-    /// Lines along which loops get none.
-    pub flush: Vec<Polyline>,
+    /// What lies between each of them and its cap.
+    pub tubes: Tubes,
 }
 
 /// What is done with the longest border that is not filled; the others get caps in any case.
@@ -57,23 +56,6 @@ pub enum Way {
     /// The mesh is doubled across it. A single triangle gets a cap: its image would have the same
     /// three corners.
     Double,
-}
-
-/// A loop lies along a line if it is nowhere farther from it than this share of a tube's length.
-const ALONG: f64 = 0.2;
-
-impl Settings {
-    /// How long the tube of a loop is.
-    fn tube_at(&self, mesh: &TriangleMesh, border: &[HalfedgeId]) -> f64 {
-        let near = ALONG * self.tube;
-        let places = || border.iter().map(|&h| mesh.position(mesh.origin(h)));
-        let is_along = |line: &Polyline| places().all(|p| line.distance(p) <= near);
-        if self.flush.iter().any(is_along) {
-            0.0
-        } else {
-            self.tube
-        }
-    }
 }
 
 /// Which borders are closed for good: their caps count as real faces.
@@ -154,19 +136,19 @@ pub fn close(
     let loops = mesh.border_loops();
     check(mesh, loops.len())?;
     let mut sheet = Sheet::new(mesh);
-    let tube = |border: &[HalfedgeId]| settings.tube_at(mesh, border);
+    let tubes = &settings.tubes;
     let (filled, mut open): (Vec<_>, Vec<_>) = loops
         .into_iter()
         .partition(|border| is_filled(mesh, border, settings.fill));
     for (i, border) in filled.iter().enumerate() {
         progress.at(0.3 * i as f64 / filled.len() as f64)?;
-        sheet.cap((border, 0.0), progress)?;
+        sheet.cap(border, &Tubes::default(), progress)?;
     }
     sheet.n_real = sheet.faces.len();
     let longest = take_longest(mesh, &mut open);
     for (i, border) in open.iter().enumerate() {
         progress.at(0.3 + 0.3 * i as f64 / open.len() as f64)?;
-        sheet.cap((border, tube(border)), progress)?;
+        sheet.cap(border, tubes, progress)?;
     }
     let mut n_capped = open.len();
     let mut n_doubled = 0;
@@ -176,7 +158,7 @@ pub fn close(
             sheet.double(&border, progress)?;
             n_doubled = 1;
         } else {
-            sheet.cap((&border, tube(&border)), progress)?;
+            sheet.cap(&border, tubes, progress)?;
             n_capped += 1;
         }
     }

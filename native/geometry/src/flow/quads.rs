@@ -160,45 +160,7 @@ fn search(
         }
         from = to;
     }
-    let laid = lay_plan(last, &progress.part("", from, 1.0));
-    if std::env::var("FIRM_DEBUG").is_ok() {
-        match &laid {
-            Ok(laid) => {
-                for (line, is_met) in last.lines().zip(&laid.is_met) {
-                    let length: f64 = line.length_of(mesh, |_| true);
-                    let edge = (crate::measure::total_area(mesh) / settings.n_quads as f64).sqrt();
-                    eprintln!(
-                        "line firm {} met {} length {:.1} closed {} real left {:?} at {:?} indices {:?}",
-                        line.is_firm,
-                        is_met,
-                        length / edge,
-                        line.ends[0] == line.ends[1],
-                        is_border(
-                            mesh,
-                            guides.firm.and_then(|firm| firm.real.as_ref()),
-                            line.halfedges[0]
-                        ),
-                        mesh.position(line.ends[0]),
-                        line.ends.map(|v| dressed.field.indices[v])
-                    );
-                }
-                eprintln!(
-                    "cones {} quads {} score {:?} stuck {}",
-                    dressed.field.indices.iter().filter(|i| **i != 0).count(),
-                    laid.quads.len(),
-                    laid.report.score,
-                    laid.report.n_stuck
-                );
-            }
-            Err(e) => eprintln!(
-                "no grid: {e}; lines {:?}",
-                last.lines()
-                    .map(|l| (l.halfedges.len(), l.is_firm))
-                    .collect::<Vec<_>>()
-            ),
-        }
-    }
-    let laid = laid?;
+    let laid = lay_plan(last, &progress.part("", from, 1.0))?;
     match unmet(last, &laid) {
         0 => Ok(laid),
         n_unmet => Err(Error::Creases {

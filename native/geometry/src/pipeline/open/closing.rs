@@ -37,8 +37,8 @@ pub struct Closing {
     pub(super) told: Option<Opened>,
     /// Borders up to this length are filled for good.
     pub(super) asked: f64,
-    /// How long the tubes are between the others and their caps.
-    tube: f64,
+    /// What lies between the others and their caps.
+    tubes: close::Tubes,
 }
 
 /// A part reduced to the size of the map and closed.
@@ -65,14 +65,14 @@ struct Limits {
 }
 
 impl Closing {
-    /// Cuts the handles of a part that is to get so many faces, and closes its borders; none if it
-    /// has neither.
+    /// Cuts the handles of a part that is to get so many faces, and closes its borders, all with tubes
+    /// or those from which the surface goes on smoothly; none if it has neither.
     ///
     /// # Errors
     /// A part that cannot be closed; when cancelled.
     pub fn new(
         part: &TriangleMesh,
-        (settings, n_faces): (&Settings, usize),
+        (settings, n_faces, has_tubes): (&Settings, usize, bool),
         progress: &Progress<'_>,
     ) -> Result<Option<Self>, Error> {
         let shape = topology_of_triangles(part);
@@ -98,8 +98,11 @@ impl Closing {
         let settings = close::Settings {
             fill: close::Fill::UpTo(limits.closed()),
             way: close::Way::Measured,
-            tube: std::env::var("TUBE").map_or(TUBE, |x| x.parse().unwrap()) * edge,
-            flush: cuts.clone(),
+            tubes: close::Tubes {
+                length: TUBE * edge,
+                everywhere: has_tubes,
+                flush: cuts.clone(),
+            },
         };
         let closed = close::close(&cut.mesh, &settings, progress)?;
         Ok(Some(Self {
@@ -112,7 +115,7 @@ impl Closing {
             },
             told: Opened::new([shape.n_borders, n_filled], closed.n_doubled > 0),
             asked: limits.filled(),
-            tube: settings.tube,
+            tubes: settings.tubes,
             closed,
             open: cut.mesh,
         }))
@@ -176,8 +179,7 @@ impl Closing {
         close::Settings {
             fill,
             way,
-            tube: self.tube,
-            flush: self.cuts.clone(),
+            tubes: self.tubes.clone(),
         }
     }
 

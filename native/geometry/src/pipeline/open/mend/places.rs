@@ -30,7 +30,7 @@ const COST: f64 = 0.02;
 /// What a border costs whose edges at a vertex have their middles a mean edge off the part's.
 const OFF_BORDER: f64 = 1.0;
 /// No vertex goes farther than this, in mean edges.
-const FARTHEST: f64 = 1.0;
+const FARTHEST: f64 = 0.6;
 /// How far a vertex between two edges of one quad on a straight border leaves it, in mean edges.
 const BULGES: [f64; 2] = [0.06, 0.03];
 /// The least share by which a move has to lower the sum of both.
