@@ -121,7 +121,7 @@ impl Sheet<'_> {
     /// The mean cosine between the ways of a tube and those of the surface to its border.
     fn smoothness(&self, ring: &Ring<'_>, ways: &[DVec3]) -> f64 {
         let mut sum = 0.0;
-        for i in 0..ring.points.len() {
+        for (i, way) in ways.iter().enumerate() {
             let [from, to] = [i, ring.next(i)].map(|i| ring.vertices[i]);
             // The surface's own halfedge runs the other way.
             let mut leaving = self.mesh.outgoing(to);
@@ -131,7 +131,7 @@ impl Sheet<'_> {
             let edge = ring.points[ring.next(i)] - ring.points[i];
             let normal = area_vector(self.mesh.triangle(h.face())).normalize_or_zero();
             let outward = edge.cross(-normal).normalize_or_zero();
-            sum += edge.length() * outward.dot(ways[i]);
+            sum += edge.length() * outward.dot(*way);
         }
         sum / ring.round.max(f64::MIN_POSITIVE)
     }
@@ -158,5 +158,75 @@ impl Sheet<'_> {
         }
         self.tubes.push(first..self.faces.len());
         last
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::close::tests::{sampled, star, vessel};
+    use crate::close::{Settings, close};
+    use crate::mesh::TriangleMesh;
+    use crate::progress::Progress;
+
+    fn tubes(everywhere: bool) -> Tubes {
+        Tubes {
+            length: 0.5,
+            everywhere,
+            ..Tubes::default()
+        }
+    }
+
+    /// How far beyond a vessel's rim its closed version reaches.
+    fn height(mesh: &TriangleMesh, tubes: Tubes) -> f64 {
+        let settings = Settings {
+            tubes,
+            ..Settings::default()
+        };
+        let closed = close(mesh, &settings, &Progress::none()).unwrap();
+        closed.mesh.check().unwrap();
+        assert!(closed.mesh.is_closed());
+        assert_eq!(closed.mesh.euler_number(), 2);
+        assert_eq!(&closed.mesh.faces()[..mesh.n_faces()], mesh.faces());
+        let heights = closed.mesh.positions().iter().map(|p| p.z);
+        heights.fold(f64::MIN, f64::max)
+    }
+
+    #[test]
+    fn a_pipe_goes_on_into_its_tube_and_caps_lie_at_the_end() {
+        for rim in [
+            star(24, 0.0),
+            sampled(&[[0., 0.], [2., 0.], [2., 1.], [0., 1.]], 0.2),
+        ] {
+            let pipe = vessel(&rim, 4.0);
+            assert!(height(&pipe, Tubes::default()).abs() < 1e-9);
+            for everywhere in [false, true] {
+                assert!((height(&pipe, tubes(everywhere)) - 0.5).abs() < 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn a_rim_that_turns_away_has_a_tube_only_everywhere() {
+        // A vessel whose walls stand at an angle of more than 60° to the way out.
+        let rim = star(24, 0.0);
+        let deep = vessel(&rim, 0.5);
+        let wide = deep.positions().iter().enumerate();
+        let narrow = |(i, p): (usize, &DVec3)| if i < 24 { *p } else { *p * 0.2 };
+        let bowl = deep.with_positions(wide.map(narrow).collect());
+        assert!(height(&bowl, tubes(false)).abs() < 1e-9);
+        assert!(height(&bowl, tubes(true)) > 0.4);
+    }
+
+    #[test]
+    fn a_loop_along_a_given_line_stays_flush() {
+        let rim = star(24, 0.0);
+        let pipe = vessel(&rim, 4.0);
+        let round = rim.iter().chain(rim.first()).copied().collect();
+        let tubes = Tubes {
+            flush: vec![Polyline::new(round, true)],
+            ..tubes(true)
+        };
+        assert!(height(&pipe, tubes).abs() < 1e-9);
     }
 }

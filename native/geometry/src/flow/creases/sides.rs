@@ -107,7 +107,7 @@ fn distinct(walks: &[Walk]) -> Vec<&Walk> {
     let mut found: Vec<&Walk> = Vec::new();
     for walk in walks {
         let is_same = |other: &&Walk| *other == walk || other.iter().rev().eq(walk.iter());
-        if !found.iter().any(|other| is_same(other)) {
+        if !found.iter().any(is_same) {
             found.push(walk);
         }
     }

@@ -199,7 +199,12 @@ impl Closing {
         let edge = (total_area(mesh) / n_faces.max(1) as f64).sqrt();
         // Where a handle was cut the surface goes on.
         let is_cut = |p: DVec3| self.cuts.iter().any(|cut| cut.distance(p) < SAME);
-        let mut corners = Loops::new(&self.open, &on_border).corners(mesh, edge);
+        let loops = Loops::new(&self.open, &on_border);
+        let mut corners = if self.tubes.everywhere {
+            loops.calm_corners(mesh, edge)
+        } else {
+            loops.corners(mesh, edge)
+        };
         corners.retain(|&corner| !is_cut(corner));
         let between = small.loops.lines(&small.mesh, (&corners, edge));
         let corners = between.iter().filter_map(|line| {

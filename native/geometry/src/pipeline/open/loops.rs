@@ -53,10 +53,17 @@ impl Loops {
 
     /// Where they have corners for quads of some edge length.
     pub fn corners(&self, mesh: &TriangleMesh, edge: f64) -> Vec<DVec3> {
-        let loops = self.0.iter();
-        loops
-            .flat_map(|border| Bends::new(mesh, border, edge).corners())
+        let bends = self.0.iter().map(|border| Bends::new(mesh, border, edge));
+        bends
+            .flat_map(|bends| bends.points_at(&bends.corners()))
             .collect()
+    }
+
+    /// The same without steps that are lower than a quad.
+    pub fn calm_corners(&self, mesh: &TriangleMesh, edge: f64) -> Vec<DVec3> {
+        let bends = self.0.iter().map(|border| Bends::new(mesh, border, edge));
+        let calm = |bends: Bends| bends.points_at(&bends.without_steps(&bends.corners(), edge));
+        bends.flat_map(calm).collect()
     }
 
     /// The loops from corner to corner: each corner's nearest vertex is one, if it is near. Each line
@@ -139,7 +146,6 @@ struct Bends {
     /// The length up to each point, and that of the whole.
     lengths: Vec<f64>,
     reach: f64,
-    edge: f64,
 }
 
 impl Bends {
@@ -155,7 +161,6 @@ impl Bends {
             points,
             lengths,
             reach: (REACH * edge).min(MOST_OF_LOOP * whole),
-            edge,
         }
     }
 
@@ -198,36 +203,44 @@ impl Bends {
     }
 
     /// The points that turn most within reach, of those that turn by more than a corner does.
-    fn corners(&self) -> Vec<DVec3> {
+    fn corners(&self) -> Vec<usize> {
         let n = self.points.len();
         let turns: Vec<f64> = (0..n).map(|i| self.turn(i)).collect();
         let mut order: Vec<usize> = (0..n).filter(|&i| turns[i] > CORNER).collect();
         order.sort_by(|&a, &b| turns[b].total_cmp(&turns[a]).then(a.cmp(&b)));
         let mut taken: Vec<usize> = Vec::new();
-        let whole = self.whole();
-        let away = |a: usize, b: usize| {
-            let apart = (self.lengths[a] - self.lengths[b]).abs();
-            apart.min(whole - apart)
-        };
         for i in order {
-            if taken.iter().all(|&j| away(i, j) > self.reach) {
+            if taken.iter().all(|&j| self.apart(i, j) > self.reach) {
                 taken.push(i);
             }
         }
         taken.sort_unstable();
-        let n_taken = taken.len();
+        taken
+    }
+
+    /// Some corners but for those near each other that turn opposite ways.
+    fn without_steps(&self, corners: &[usize], edge: f64) -> Vec<usize> {
+        let n = corners.len();
         let is_step = |a: usize, b: usize| {
-            let [one, other] = [taken[a], taken[b]];
-            a != b
-                && away(one, other) < STEP * self.edge
-                && self.axis(one).dot(self.axis(other)) < 0.0
+            let [one, other] = [corners[a], corners[b]];
+            let is_near = self.apart(one, other) < STEP * edge;
+            a != b && is_near && self.axis(one).dot(self.axis(other)) < 0.0
         };
         let stays = |&a: &usize| {
-            let beside = [(a + n_taken - 1) % n_taken, (a + 1) % n_taken];
+            let beside = [(a + n - 1) % n, (a + 1) % n];
             !beside.into_iter().any(|b| is_step(a, b))
         };
-        let left = (0..n_taken).filter(stays);
-        left.map(|a| self.points[taken[a]]).collect()
+        (0..n).filter(stays).map(|a| corners[a]).collect()
+    }
+
+    /// How far two points are from each other along the loop.
+    fn apart(&self, a: usize, b: usize) -> f64 {
+        let apart = (self.lengths[a] - self.lengths[b]).abs();
+        apart.min(self.whole() - apart)
+    }
+
+    fn points_at(&self, corners: &[usize]) -> Vec<DVec3> {
+        corners.iter().map(|&i| self.points[i]).collect()
     }
 }
 
@@ -279,5 +292,23 @@ mod tests {
                 .iter()
                 .all(|line| line.line.is_closed() && line.ends.is_none())
         );
+    }
+
+    #[test]
+    fn a_step_lower_than_a_quad_has_no_calm_corners() {
+        let mesh = grid(16);
+        // The vertices of one half of a side are drawn out.
+        let [low, high] = crate::mesh::bounds(mesh.positions());
+        let width = high.x - low.x;
+        let drawn = |p: &DVec3| {
+            let is_out = p.x > high.x - 1e-9 && p.y > low.y + 0.45 * width;
+            *p + DVec3::X * if is_out { 0.12 * width } else { 0.0 }
+        };
+        let stepped = mesh.with_positions(mesh.positions().iter().map(drawn).collect());
+        let loops = Loops::all(&stepped);
+        let corners = |edge: f64| loops.corners(&stepped, edge * width).len();
+        let calm = |edge: f64| loops.calm_corners(&stepped, edge * width).len();
+        assert_eq!([corners(0.2), calm(0.2)], [6, 4]);
+        assert_eq!([corners(0.1), calm(0.1)], [6, 6]);
     }
 }
