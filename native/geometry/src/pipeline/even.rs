@@ -42,6 +42,11 @@ impl Marked {
         self.0.is_empty()
     }
 
+    /// They, each from end to end.
+    pub fn segments(&self) -> impl Iterator<Item = [DVec3; 2]> {
+        self.0.iter().copied()
+    }
+
     /// They, ready to be asked for the closest point.
     pub fn tree(&self, progress: &Progress<'_>) -> Result<Bvh, Cancelled> {
         let segments: Vec<_> = self.0.iter().map(|&[a, b]| [a, b, b]).collect();

@@ -12,6 +12,7 @@
 
 mod attempt;
 mod borders;
+mod caps;
 mod carried;
 mod clock;
 mod closed;

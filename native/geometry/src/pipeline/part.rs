@@ -47,6 +47,8 @@ pub struct Wanted<'a> {
     pub reduced: Option<&'a PolygonMesh>,
     pub marks: &'a Marks,
     pub density: &'a Density,
+    /// Whether all caps of a part with borders lie at the end of tubes.
+    pub has_tubes: bool,
 }
 
 /// What has become of a part.
@@ -91,7 +93,7 @@ impl PartJob<'_> {
             let reason = wanted.too_few().or_else(|| wanted.too_many_handles(&whole));
             let reason = match reason {
                 Some(reason) => Err(reason),
-                None => told(wanted.run((whole.clone(), came), clock, progress))?,
+                None => told(wanted.run_open((&whole, came), clock, progress))?,
             };
             match reason {
                 Ok(made) => made,
@@ -106,7 +108,7 @@ impl PartJob<'_> {
 
 impl Wanted<'_> {
     /// Makes the faces of a part, closed first if it is open.
-    fn run(
+    pub(super) fn run(
         &self,
         (whole, came): (Whole, Came),
         clock: &mut Clock,
@@ -153,7 +155,8 @@ impl Wanted<'_> {
     /// Closes the part and makes it its own image, where it is to be.
     fn ready(&self, whole: Whole, progress: &Progress<'_>) -> Result<Ready<'_>, Error> {
         let closing = if whole.is_open() {
-            let closing = Closing::new(&whole, (self.marks, self.n_faces), progress)?;
+            let closing =
+                Closing::new(&whole, (self.marks, self.n_faces, self.has_tubes), progress)?;
             Some(closing)
         } else {
             None

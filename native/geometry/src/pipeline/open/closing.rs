@@ -19,6 +19,10 @@ use crate::pipeline::even::Marked;
 use crate::pipeline::marks::Marks;
 use crate::progress::{Cancelled, Progress};
 
+/// How long the tubes between borders and their caps are, in edges of quads: so there is room for the
+/// four singularities of a cap, and its corners are none of quads.
+const TUBE: f64 = 1.5;
+
 /// A part that was closed.
 pub struct Closing {
     /// The part, open and without handles.
@@ -32,6 +36,8 @@ pub struct Closing {
     wanted: Topology,
     /// Its marked edges that cuts have split, piece by piece.
     pub pieces: Marks,
+    /// What lies between borders and their caps.
+    tubes: close::Tubes,
 }
 
 /// A part reduced to the size of the map and closed.
@@ -56,13 +62,14 @@ struct Limits {
 }
 
 impl Closing {
-    /// Cuts the handles of a part that is to get so many faces, and closes its borders.
+    /// Cuts the handles of a part that is to get so many faces, and closes its borders, all with tubes
+    /// or those from which the surface goes on smoothly.
     ///
     /// # Errors
     /// A part that cannot be closed; when cancelled.
     pub fn new(
         Whole { mesh, shape, .. }: &Whole,
-        (marks, n_faces): (&Marks, usize),
+        (marks, n_faces, has_tubes): (&Marks, usize, bool),
         progress: &Progress<'_>,
     ) -> Result<Self, Error> {
         let (part, shape) = (mesh, *shape);
@@ -76,17 +83,24 @@ impl Closing {
             .filter(|border| border.length() <= limits.closed())
             .map(|border| Puncture::new(border, edge))
             .collect();
+        let cuts = cut.twins.iter().map(|[one, _]| polyline(&cut.mesh, one));
+        let cuts: Vec<Polyline> = cuts.collect();
         let settings = close::Settings {
             fill: close::Fill::UpTo(limits.closed()),
-            ..close::Settings::default()
+            way: close::Way::Measured,
+            tubes: close::Tubes {
+                length: TUBE * edge,
+                everywhere: has_tubes,
+                flush: cuts.clone(),
+            },
         };
         let closed = close::close(&cut.mesh, &settings, progress)?;
-        let cuts = cut.twins.iter().map(|[one, _]| polyline(&cut.mesh, one));
         Ok(Self {
-            cuts: cuts.collect(),
+            cuts,
             punctures,
             wanted: shape,
             pieces: marks_of_pieces((part, marks), (&cut.mesh, &cut.sides)),
+            tubes: settings.tubes,
             closed,
             open: cut.mesh,
         })
@@ -136,17 +150,22 @@ impl Closing {
             0 => close::Way::Cap,
             _ => close::Way::Double,
         };
-        close::Settings { fill, way }
+        close::Settings {
+            fill,
+            way,
+            tubes: self.tubes.clone(),
+        }
     }
 
-    /// What the quads have to keep to, and what of them is kept.
+    /// What the quads have to keep to, and what of them is kept; so many are wanted on all of it, and
+    /// on what is real.
     ///
     /// # Errors
     /// When cancelled.
     pub fn opening(
         self,
         small: &Small,
-        n_faces: usize,
+        [n_faces, n_asked]: [usize; 2],
         progress: &Progress<'_>,
     ) -> Result<Opening, Cancelled> {
         let mesh = &self.closed.mesh;
@@ -154,7 +173,12 @@ impl Closing {
         let edge = (total_area(mesh) / n_faces.max(1) as f64).sqrt();
         // Where a handle was cut the surface goes on.
         let is_cut = |p: DVec3| self.cuts.iter().any(|cut| cut.distance(p) < SAME);
-        let mut corners = Loops::new(&self.open, &on_border).corners(mesh, edge);
+        let loops = Loops::new(&self.open, &on_border);
+        let mut corners = if self.tubes.everywhere {
+            loops.calm_corners(mesh, edge)
+        } else {
+            loops.corners(mesh, edge)
+        };
         corners.retain(|&corner| !is_cut(corner));
         let between = small.loops.lines(&small.mesh, (&corners, edge));
         let corners = between.iter().filter_map(|line| {
@@ -177,6 +201,7 @@ impl Closing {
             cuts: self.cuts,
             punctures: self.punctures,
             wanted: self.wanted,
+            n_asked,
             is_real: self.closed.is_real,
         })
     }

@@ -19,12 +19,14 @@
 //! | `reopen` | which quads are kept |
 //! | `puncture` | how short borders are opened |
 //! | `weld` | how cut handles are joined again |
+//! | `mend` | how inverted quads are opened in the end |
 
 mod closing;
 mod filling;
 mod firm;
 mod hold;
 mod loops;
+mod mend;
 mod puncture;
 mod reopen;
 mod sheet;
@@ -62,6 +64,8 @@ pub struct Opening {
     punctures: Vec<Puncture>,
     /// The shape that is to come out.
     wanted: Topology,
+    /// How many quads are wanted on what is real.
+    n_asked: usize,
     /// The corners of the borders.
     corners: Vec<Corner>,
     /// Which faces of the target are real.

@@ -6,6 +6,7 @@
 use glam::DVec3;
 
 use super::Opening;
+use super::mend::around;
 use crate::deform::Deformed;
 use crate::measure::{PolygonEdges, Polyline};
 use crate::mesh::{FaceId, Id, PolygonMesh, VertexId};
@@ -40,6 +41,11 @@ impl Puncture {
             middle,
             n_edges,
         }
+    }
+
+    /// It, piece by piece.
+    pub fn pieces(&self) -> impl Iterator<Item = [DVec3; 2]> {
+        self.line.pieces()
     }
 
     /// Where vertices in a row belong that have what goes on their left.
@@ -140,17 +146,6 @@ impl Puncture {
         rings.sort_by(|a, b| away(&a.0).total_cmp(&away(&b.0)));
         rings
     }
-}
-
-/// The faces at every vertex.
-fn around(mesh: &PolygonMesh) -> Vec<Vec<FaceId>> {
-    let mut around = vec![Vec::new(); mesh.n_vertices()];
-    for face in mesh.face_ids() {
-        for v in mesh.face(face) {
-            around[v.index()].push(face);
-        }
-    }
-    around
 }
 
 /// The eight vertices round one of four quads, counterclockwise; none where they do not close.

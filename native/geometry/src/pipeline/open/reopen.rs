@@ -54,7 +54,7 @@ impl Opening {
             refused => refused,
         };
         let opened = match opened {
-            Ok(opened) => opened,
+            Ok(opened) => self.mended(opened, progress)?,
             refused => return Ok(refused),
         };
         let found = topology(&opened.mesh, progress)?;
