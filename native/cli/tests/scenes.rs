@@ -13,13 +13,19 @@ fn painted() -> String {
     let text = ball("");
     let mut coordinates = String::new();
     let mut faces = String::new();
-    for (i, line) in text.lines().filter(|line| line.starts_with("v ")).enumerate() {
-        let mut numbers = line.split(' ').skip(1).map(|word| word.parse::<f64>().unwrap());
+    for line in text.lines().filter(|line| line.starts_with("v ")) {
+        let mut numbers = line
+            .split(' ')
+            .skip(1)
+            .map(|word| word.parse::<f64>().unwrap());
         let [x, y] = [numbers.next().unwrap(), numbers.next().unwrap()];
         coordinates += &format!("vt {} {}\n", 0.5 + 0.3 * x, 0.5 + 0.3 * y);
-        assert!(i < BALL_FACES);
     }
-    for (i, line) in text.lines().filter(|line| line.starts_with("f ")).enumerate() {
+    for (i, line) in text
+        .lines()
+        .filter(|line| line.starts_with("f "))
+        .enumerate()
+    {
         match i {
             0 => faces += "usemtl red paint\n",
             _ if i == BALL_FACES / 2 => faces += "usemtl blue\n",
@@ -29,20 +35,27 @@ fn painted() -> String {
         faces += &format!("f{}\n", corners.collect::<String>());
     }
     let vertices: Vec<&str> = text.lines().filter(|line| line.starts_with("v ")).collect();
-    format!("mtllib my paints.mtl\n{}\n{coordinates}{faces}", vertices.join("\n"))
+    format!(
+        "mtllib my paints.mtl\n{}\n{coordinates}{faces}",
+        vertices.join("\n")
+    )
 }
 
 /// How far the texture coordinates of an OBJ file are from those of [`painted`] at most.
 fn farthest(text: &str) -> f64 {
     let numbers = |start: &str| -> Vec<Vec<f64>> {
         let lines = text.lines().filter_map(|line| line.strip_prefix(start));
-        lines.map(|line| line.split(' ').map(|word| word.parse().unwrap()).collect()).collect()
+        lines
+            .map(|line| line.split(' ').map(|word| word.parse().unwrap()).collect())
+            .collect()
     };
     let (points, coordinates) = (numbers("v "), numbers("vt "));
     let mut farthest = 0.0f64;
     let corners = text.lines().filter_map(|line| line.strip_prefix("f "));
     for corner in corners.flat_map(|line| line.split(' ')) {
-        let (v, vt) = corner.split_once('/').expect("every corner has texture coordinates");
+        let (v, vt) = corner
+            .split_once('/')
+            .expect("every corner has texture coordinates");
         let index = |word: &str| word.parse::<usize>().unwrap() - 1;
         let (p, c) = (&points[index(v)], &coordinates[index(vt)]);
         for i in 0..2 {
@@ -77,17 +90,31 @@ fn a_scene_goes_in_and_out_through_files_and_streams() {
     assert_eq!(made.code, 0, "{}", made.err);
     let names = |path: &str| -> Vec<String> {
         let Gltf { document, .. } = Gltf::open(Path::new(path)).unwrap();
-        let names = document.materials().filter_map(|material| material.name().map(str::to_owned));
+        let names = document
+            .materials()
+            .filter_map(|material| material.name().map(str::to_owned));
         names.collect()
     };
     assert_eq!(names(&glb), ["red paint", "blue"]);
     let low = folder.path("low.glb");
     let ended = run(&["remesh", &glb, &low, "--faces", "400"]);
     assert_eq!(ended.code, 0, "{}", ended.err);
-    assert!(ended.err.contains("polygons are cut into triangles"), "{}", ended.err);
+    assert!(
+        ended.err.contains("polygons are cut into triangles"),
+        "{}",
+        ended.err
+    );
     assert_eq!(names(&low), ["red paint", "blue"]);
     let bytes = fs::read(&glb).unwrap();
-    let piped = ["remesh", "-", "-", "--faces", "400", "--output-format", "glb"];
+    let piped = [
+        "remesh",
+        "-",
+        "-",
+        "--faces",
+        "400",
+        "--output-format",
+        "glb",
+    ];
     let streamed = run_with_input(&piped, &bytes);
     assert_eq!(streamed.code, 0, "{}", streamed.err);
     assert!(streamed.out == fs::read(&low).unwrap());
@@ -103,7 +130,8 @@ fn a_scene_goes_in_and_out_through_files_and_streams() {
 fn every_verb_reads_a_scene() {
     let folder = Folder::new();
     let input = folder.write("ball.obj", &painted());
-    let [glb, report, sphere] = ["ball.gltf", "map.json", "sphere.glb"].map(|name| folder.path(name));
+    let [glb, report, sphere] =
+        ["ball.gltf", "map.json", "sphere.glb"].map(|name| folder.path(name));
     let made = run(&["decimate", &input, &glb, "--faces", "300"]);
     assert_eq!(made.code, 0, "{}", made.err);
     let embedded = run(&["embed", &glb, "--report", &report, "--sphere", &sphere]);

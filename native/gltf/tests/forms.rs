@@ -19,13 +19,18 @@ fn one(primitive: Value) -> Value {
 fn triangles(file: &[u8]) -> Vec<[DVec3; 3]> {
     let scene = Scene::read(file, None).unwrap();
     let mesh = scene.mesh();
-    let faces = mesh.faces().map(|face| [0, 1, 2].map(|i| mesh.position(face[i])));
+    let faces = mesh
+        .faces()
+        .map(|face| [0, 1, 2].map(|i| mesh.position(face[i])));
     faces.collect()
 }
 
 fn wanted() -> Vec<[DVec3; 3]> {
     let point = |i: u16| DVec3::from_array(POINTS[i as usize].map(f64::from));
-    FACES.chunks_exact(3).map(|f| [f[0], f[1], f[2]].map(point)).collect()
+    FACES
+        .chunks_exact(3)
+        .map(|f| [f[0], f[1], f[2]].map(point))
+        .collect()
 }
 
 #[test]
@@ -35,13 +40,21 @@ fn strips_fans_and_lists_without_indices_are_read() {
         let points = file.floats(&POINTS);
         let indices = file.indices(indices);
         let attributes = json!({"POSITION": points});
-        file.glb(one(json!({"mode": mode, "attributes": attributes, "indices": indices})))
+        file.glb(one(
+            json!({"mode": mode, "attributes": attributes, "indices": indices}),
+        ))
     };
     assert_eq!(triangles(&with(4, &FACES)), wanted());
     assert_eq!(triangles(&with(6, &[0, 1, 2, 3])), wanted());
     let strip = triangles(&with(5, &[1, 2, 0, 3]));
     let turned = |t: &[DVec3; 3]| [t[1], t[2], t[0]];
-    assert_eq!(strip, [turned(&wanted()[0]), [wanted()[1][0], wanted()[1][1], wanted()[1][2]]]);
+    assert_eq!(
+        strip,
+        [
+            turned(&wanted()[0]),
+            [wanted()[1][0], wanted()[1][1], wanted()[1][2]]
+        ]
+    );
     let mut file = File::default();
     let points = file.floats(&FACES.map(|i| POINTS[i as usize]));
     let file = file.glb(one(json!({"attributes": {"POSITION": points}})));
@@ -63,7 +76,11 @@ fn quantised_interleaved_and_sparse_positions_are_read() {
     let indices = file.indices(&FACES);
     let mut text = one(json!({"attributes": {"POSITION": points}, "indices": indices}));
     text["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
-    for (a, b) in triangles(&file.glb(text)).iter().flatten().zip(wanted().iter().flatten()) {
+    for (a, b) in triangles(&file.glb(text))
+        .iter()
+        .flatten()
+        .zip(wanted().iter().flatten())
+    {
         assert!(a.distance(*b) < 1e-4, "{a} {b}");
     }
 
@@ -71,7 +88,10 @@ fn quantised_interleaved_and_sparse_positions_are_read() {
     let mut low = POINTS;
     low[3][2] = 0.0;
     let points = file.floats(&low);
-    let (which, what) = (file.view(&[3]), file.view(&POINTS[3].map(f32::to_le_bytes).concat()));
+    let (which, what) = (
+        file.view(&[3]),
+        file.view(&POINTS[3].map(f32::to_le_bytes).concat()),
+    );
     file.accessors[points]["sparse"] = json!({"count": 1,
         "indices": {"bufferView": which, "componentType": 5121}, "values": {"bufferView": what}});
     let indices = file.indices(&FACES);
@@ -93,11 +113,20 @@ fn text_with_bytes_in_it_or_beside_it_is_the_same_scene() {
     let own = Scene::read(&file, None).unwrap();
     assert_eq!(beside.mesh(), own.mesh());
     let notes = beside.notes().join("\n");
-    assert!(notes.contains("image 1 is the file 'https://nobody/picture.png', which"), "{notes}");
+    assert!(
+        notes.contains("image 1 is the file 'https://nobody/picture.png', which"),
+        "{notes}"
+    );
     assert!(!notes.contains("image 0"), "{notes}");
     let alone = Scene::read(text.as_bytes(), None).unwrap_err().to_string();
-    assert!(alone.starts_with("buffer 0 is the file 'all%20bytes.bin'"), "{alone}");
-    assert!(alone.ends_with("what comes from a stream has no files beside it"), "{alone}");
+    assert!(
+        alone.starts_with("buffer 0 is the file 'all%20bytes.bin'"),
+        "{alone}"
+    );
+    assert!(
+        alone.ends_with("what comes from a stream has no files beside it"),
+        "{alone}"
+    );
 }
 
 #[test]
@@ -123,6 +152,10 @@ fn a_plain_mesh_becomes_a_scene_and_comes_back() {
             assert!((a - c).abs() < 1e-6 && (b - d).abs() < 1e-6);
         }
     }
-    let nothing = plain(&orbflow_geometry::mesh::io::MeshFile::default(), Container::Glb).unwrap();
+    let nothing = plain(
+        &orbflow_geometry::mesh::io::MeshFile::default(),
+        Container::Glb,
+    )
+    .unwrap();
     gltf::Gltf::from_slice(&nothing).unwrap();
 }

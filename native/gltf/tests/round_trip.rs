@@ -33,7 +33,9 @@ fn ball() -> Vec<Read> {
     let Gltf { document, blob } = Gltf::from_slice(&done().file).unwrap();
     let bytes = blob.unwrap();
     let mesh = document.meshes().next().unwrap();
-    mesh.primitives().map(|primitive| read(&primitive, &bytes)).collect()
+    mesh.primitives()
+        .map(|primitive| read(&primitive, &bytes))
+        .collect()
 }
 
 fn read(primitive: &Primitive<'_>, bytes: &[u8]) -> Read {
@@ -59,13 +61,23 @@ fn read(primitive: &Primitive<'_>, bytes: &[u8]) -> Read {
         weights: weights.map(|w| w.map(f64::from)).collect(),
         moves: moves.unwrap().map(point).collect(),
         normals: reader.read_normals().unwrap().map(point).collect(),
-        faces: indices.chunks_exact(3).map(|f| [f[0], f[1], f[2]].map(|i| i as usize)).collect(),
+        faces: indices
+            .chunks_exact(3)
+            .map(|f| [f[0], f[1], f[2]].map(|i| i as usize))
+            .collect(),
     };
     let n = found.places.len();
     assert!(n > 0 && found.faces.iter().flatten().all(|&i| i < n));
-    let lengths = [found.coordinates.len(), found.colors.len(), found.joints.len()];
+    let lengths = [
+        found.coordinates.len(),
+        found.colors.len(),
+        found.joints.len(),
+    ];
     assert_eq!(lengths, [n; 3]);
-    assert_eq!([found.weights.len(), found.moves.len(), found.normals.len()], [n; 3]);
+    assert_eq!(
+        [found.weights.len(), found.moves.len(), found.normals.len()],
+        [n; 3]
+    );
     found
 }
 
@@ -85,8 +97,16 @@ fn all_but_meshes_stays_as_it_is() {
         for name in ["accessors", "bufferViews", "buffers"] {
             text.as_object_mut().unwrap().remove(name);
         }
-        for primitive in ["/meshes/0/primitives/0", "/meshes/0/primitives/1", "/meshes/1/primitives/0"] {
-            let primitive = text.pointer_mut(primitive).unwrap().as_object_mut().unwrap();
+        for primitive in [
+            "/meshes/0/primitives/0",
+            "/meshes/0/primitives/1",
+            "/meshes/1/primitives/0",
+        ] {
+            let primitive = text
+                .pointer_mut(primitive)
+                .unwrap()
+                .as_object_mut()
+                .unwrap();
             primitive.remove("attributes");
             primitive.remove("indices");
             primitive.remove("targets");
@@ -98,13 +118,25 @@ fn all_but_meshes_stays_as_it_is() {
 #[test]
 fn what_is_not_taken_over_is_named() {
     let notes = done().notes.join("\n");
-    for words in ["left out: TANGENT, _TEMPERATURE", "mesh 1 is shown by 2 nodes and remeshed once"] {
+    for words in [
+        "left out: TANGENT, _TEMPERATURE",
+        "mesh 1 is shown by 2 nodes and remeshed once",
+    ] {
         assert!(notes.contains(words), "{notes}");
     }
     let (text, _) = parts(&done().file);
-    let attributes = text["meshes"][0]["primitives"][0]["attributes"].as_object().unwrap();
+    let attributes = text["meshes"][0]["primitives"][0]["attributes"]
+        .as_object()
+        .unwrap();
     let names: Vec<_> = attributes.keys().map(String::as_str).collect();
-    let wanted = ["COLOR_0", "JOINTS_0", "NORMAL", "POSITION", "TEXCOORD_0", "WEIGHTS_0"];
+    let wanted = [
+        "COLOR_0",
+        "JOINTS_0",
+        "NORMAL",
+        "POSITION",
+        "TEXCOORD_0",
+        "WEIGHTS_0",
+    ];
     assert_eq!(names, wanted);
 }
 
@@ -119,9 +151,13 @@ fn no_bytes_are_left_that_nothing_names() {
     let pieces: BTreeSet<_> = views.map(piece).collect();
     let named: usize = pieces.iter().map(|[_, n]| n.next_multiple_of(4)).sum();
     assert_eq!(bytes.len(), named);
-    assert!(text["accessors"].as_array().unwrap().iter().all(|accessor| {
-        accessor["count"].as_u64().unwrap() > 0
-    }));
+    assert!(
+        text["accessors"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .all(|accessor| { accessor["count"].as_u64().unwrap() > 0 })
+    );
 }
 
 #[test]
@@ -139,7 +175,9 @@ fn texture_coordinates_are_those_of_the_place_on_its_own_side() {
                 let [u, v] = primitive.coordinates[i];
                 // A face across a seam belongs to one side alone, whose cell it stays in.
                 let cell = (6.0 * u).floor() as usize;
-                assert!((0.09..0.91).contains(&(6.0 * u - cell as f64)) && (0.09..0.91).contains(&v));
+                assert!(
+                    (0.09..0.91).contains(&(6.0 * u - cell as f64)) && (0.09..0.91).contains(&v)
+                );
                 let (of_corner, at) = side_of(p);
                 let wanted = coordinate(of_corner, at);
                 let is_near = (wanted[0] - u).abs() < 0.02 && (wanted[1] - v).abs() < 0.06;
@@ -147,7 +185,10 @@ fn texture_coordinates_are_those_of_the_place_on_its_own_side() {
             }
         }
     }
-    assert!(n_all > 200 && n_far * 50 < n_all, "{n_far} of {n_all} faces have far corners");
+    assert!(
+        n_all > 200 && n_far * 50 < n_all,
+        "{n_far} of {n_all} faces have far corners"
+    );
 }
 
 #[test]
@@ -166,12 +207,26 @@ fn every_face_has_the_material_beneath_it() {
 #[test]
 fn shares_of_bones_sum_to_one_and_colours_follow_the_place() {
     for primitive in ball() {
-        for (i, p) in primitive.places.iter().enumerate().filter(|(_, p)| p.x < 2.0) {
+        for (i, p) in primitive
+            .places
+            .iter()
+            .enumerate()
+            .filter(|(_, p)| p.x < 2.0)
+        {
             let weights = primitive.weights[i];
-            assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-7, "{weights:?}");
-            assert!(weights.is_sorted_by(|a, b| a >= b), "the largest come first");
+            assert!(
+                (weights.iter().sum::<f64>() - 1.0).abs() < 1e-7,
+                "{weights:?}"
+            );
+            assert!(
+                weights.is_sorted_by(|a, b| a >= b),
+                "the largest come first"
+            );
             let of_bones = weights.iter().zip(primitive.joints[i]);
-            let second: f64 = of_bones.filter(|(_, bone)| *bone == 1).map(|(w, _)| w).sum();
+            let second: f64 = of_bones
+                .filter(|(_, bone)| *bone == 1)
+                .map(|(w, _)| w)
+                .sum();
             assert!((second - share(p.z)).abs() < 0.03, "{second} at {p}");
             let [red, green, blue, alpha] = primitive.colors[i];
             assert!((red - share(p.z)).abs() < 0.2 * EDGE, "{red} at {p}");
@@ -223,7 +278,11 @@ fn normals_are_smooth_where_those_of_the_file_were() {
             let out = p.normalize_or_zero().dot(*normal);
             assert!(p.x > 2.0 || out > 0.97, "{normal} at {p}");
         }
-        for face in primitive.faces.iter().map(|f| f.map(|i| primitive.places[i])) {
+        for face in primitive
+            .faces
+            .iter()
+            .map(|f| f.map(|i| primitive.places[i]))
+        {
             let [a, b, c] = face;
             let out = (b - a).cross(c - a).dot(a + b + c);
             assert!(a.x > 2.0 || out > 0.0, "a face looks inwards at {a}");
@@ -233,7 +292,10 @@ fn normals_are_smooth_where_those_of_the_file_were() {
 
 #[test]
 fn a_part_that_stays_keeps_its_bits() {
-    let places: Vec<_> = ball().into_iter().flat_map(|primitive| primitive.places).collect();
+    let places: Vec<_> = ball()
+        .into_iter()
+        .flat_map(|primitive| primitive.places)
+        .collect();
     for corner in SPECK {
         let corner = DVec3::from_array(corner.map(f64::from));
         assert!(places.contains(&corner), "{corner}");
@@ -247,7 +309,13 @@ fn a_mirrored_node_does_not_turn_its_mesh_inside_out() {
     let stone = document.meshes().nth(1).unwrap();
     assert_eq!(stone.primitives().len(), 1);
     let primitive = stone.primitives().next().unwrap();
-    assert_eq!(primitive.attributes().map(|(name, _)| name).collect::<Vec<_>>(), [Semantic::Positions]);
+    assert_eq!(
+        primitive
+            .attributes()
+            .map(|(name, _)| name)
+            .collect::<Vec<_>>(),
+        [Semantic::Positions]
+    );
     let reader = primitive.reader(|_| Some(&bytes[..]));
     let places: Vec<DVec3> = reader
         .read_positions()
@@ -255,7 +323,10 @@ fn a_mirrored_node_does_not_turn_its_mesh_inside_out() {
         .map(|p| DVec3::from_array(p.map(f64::from)))
         .collect();
     let indices: Vec<_> = reader.read_indices().unwrap().into_u32().collect();
-    assert!(places.iter().all(|p| (0.9..1.1).contains(&p.length())), "in its own space it is a ball");
+    assert!(
+        places.iter().all(|p| (0.9..1.1).contains(&p.length())),
+        "in its own space it is a ball"
+    );
     for face in indices.chunks_exact(3) {
         let [a, b, c] = [0, 1, 2].map(|i| places[face[i] as usize]);
         assert!((b - a).cross(c - a).dot(a + b + c) > 0.0);
@@ -269,14 +340,16 @@ fn the_same_file_gives_the_same_bytes_in_either_container() {
     let Source::Uri(uri) = document.buffers().next().unwrap().source() else {
         panic!("the bytes are in the text");
     };
-    let data = uri.strip_prefix("data:application/octet-stream;base64,").unwrap();
+    let data = uri
+        .strip_prefix("data:application/octet-stream;base64,")
+        .unwrap();
     let (same, mut bytes) = parts(&done().file);
     let data = STANDARD.decode(data).unwrap();
     bytes.truncate(data.len());
     assert!(data == bytes);
     let text: serde_json::Value = serde_json::from_slice(&text).unwrap();
     assert_eq!(text["accessors"], same["accessors"]);
-    let [by_text, by_bytes] = [&text.to_string().into_bytes(), &done().file]
-        .map(|file| Scene::read(file, None).unwrap());
+    let [by_text, by_bytes] =
+        [&text.to_string().into_bytes(), &done().file].map(|file| Scene::read(file, None).unwrap());
     assert_eq!(by_text.mesh(), by_bytes.mesh());
 }

@@ -36,7 +36,8 @@ impl File {
     pub fn view(&mut self, bytes: &[u8]) -> usize {
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
         let (at, n) = (self.bytes.len(), bytes.len());
-        self.views.push(json!({"buffer": 0, "byteOffset": at, "byteLength": n}));
+        self.views
+            .push(json!({"buffer": 0, "byteOffset": at, "byteLength": n}));
         self.bytes.extend_from_slice(bytes);
         self.views.len() - 1
     }
@@ -50,8 +51,14 @@ impl File {
     }
 
     pub fn floats<const N: usize>(&mut self, rows: &[[f32; N]]) -> usize {
-        let bytes: Vec<u8> = rows.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
-        let kind = ["", "SCALAR", "VEC2", "VEC3", "VEC4"].get(N).unwrap_or(&"MAT4");
+        let bytes: Vec<u8> = rows
+            .iter()
+            .flatten()
+            .flat_map(|x| x.to_le_bytes())
+            .collect();
+        let kind = ["", "SCALAR", "VEC2", "VEC3", "VEC4"]
+            .get(N)
+            .unwrap_or(&"MAT4");
         let accessor = self.accessor(kind, 5126, &bytes, rows.len());
         if N == 3 {
             let bound = |f: fn(f32, f32) -> f32| -> Vec<f32> {
@@ -121,7 +128,10 @@ fn on_side(side: usize, i: usize, j: usize) -> ([f32; 3], [f32; 2]) {
         1 => DVec3::new(v, w, u),
         _ => DVec3::new(u, v, w),
     };
-    (p.normalize_or_zero().as_vec3().to_array(), [s as f32, t as f32])
+    (
+        p.normalize_or_zero().as_vec3().to_array(),
+        [s as f32, t as f32],
+    )
 }
 
 /// The side of the ball that a place is on, and where that is there.
@@ -159,8 +169,17 @@ fn half(file: &mut File, sides: std::ops::Range<usize>, speck: bool) -> Value {
         }
         let name = |i: usize, j: usize| first + (i * (SQUARES + 1) + j) as u16;
         for (i, j) in (0..SQUARES).flat_map(|i| (0..SQUARES).map(move |j| (i, j))) {
-            let quad = [name(i, j), name(i + 1, j), name(i + 1, j + 1), name(i, j + 1)];
-            let turn = if side < 3 { [0, 1, 2, 0, 2, 3] } else { [0, 2, 1, 0, 3, 2] };
+            let quad = [
+                name(i, j),
+                name(i + 1, j),
+                name(i + 1, j + 1),
+                name(i, j + 1),
+            ];
+            let turn = if side < 3 {
+                [0, 1, 2, 0, 2, 3]
+            } else {
+                [0, 2, 1, 0, 3, 2]
+            };
             indices.extend(turn.map(|k| quad[k]));
         }
     }
@@ -172,7 +191,9 @@ fn half(file: &mut File, sides: std::ops::Range<usize>, speck: bool) -> Value {
     }
     let byte = |x: f32| (255.0 * share(f64::from(x)).clamp(0.0, 1.0)).round() as u8;
     let colors: Vec<_> = points.iter().map(|p| [byte(p[2]), 0, 255, 255]).collect();
-    let shares = points.iter().map(|p| share(f64::from(p[2])).clamp(0.0, 1.0) as f32);
+    let shares = points
+        .iter()
+        .map(|p| share(f64::from(p[2])).clamp(0.0, 1.0) as f32);
     let weights: Vec<_> = shares.map(|share| [1.0 - share, share, 0.0, 0.0]).collect();
     let joints = vec![[0, 1, 0, 0]; points.len()];
     let rises = |p: &[f32; 3]| side_of(DVec3::from_array(p.map(f64::from))).0 == 2;
@@ -201,7 +222,10 @@ fn half(file: &mut File, sides: std::ops::Range<usize>, speck: bool) -> Value {
 /// An accessor that is zero but at some elements.
 fn sparse(file: &mut File, which: &[u16], n: usize) -> usize {
     let indices: Vec<u8> = which.iter().flat_map(|i| i.to_le_bytes()).collect();
-    let up = [0.0, 0.0, RISE as f32].map(f32::to_le_bytes).concat().repeat(which.len());
+    let up = [0.0, 0.0, RISE as f32]
+        .map(f32::to_le_bytes)
+        .concat()
+        .repeat(which.len());
     let (indices, values) = (file.view(&indices), file.view(&up));
     file.accessors.push(json!({
         "componentType": 5126, "count": n, "type": "VEC3",
