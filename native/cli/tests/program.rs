@@ -203,11 +203,11 @@ fn wrong_usage_ends_with_2_and_writes_nothing() {
         ),
         (
             owned(&["remesh", &input, &stl]),
-            "must end in .obj, .ply or .off",
+            "must end in .obj, .ply, .off, .glb or .gltf",
         ),
         (
             owned(&["remesh", &input, &bare]),
-            "must end in .obj, .ply or .off",
+            "must end in .obj, .ply, .off, .glb or .gltf",
         ),
         (
             owned(&["remesh", &input, "-", "--report", "-"]),

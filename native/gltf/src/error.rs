@@ -114,7 +114,7 @@ pub enum ReadError {
         node: usize,
     },
     /// A file beside it cannot be found from here.
-    #[error("{item} is the file '{uri}': {why}")]
+    #[error("{item} is the file '{uri}', which is not read: {why}")]
     Uri {
         /// What is in the file.
         item: Item,

@@ -25,6 +25,7 @@ mod carry;
 mod container;
 mod error;
 mod group;
+mod load;
 mod normals;
 mod placed;
 mod plain;

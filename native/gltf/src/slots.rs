@@ -118,8 +118,13 @@ impl Slots {
     /// Leaves out what is free at the end, and makes the rest of what is free as small as can be.
     pub fn finish(&mut self) {
         cut(&mut self.accessors, &mut self.free.accessors);
-        for &i in &self.free.accessors {
-            self.accessors[i] = json!({"componentType": 5126, "count": 1, "type": "SCALAR"});
+        if !self.free.accessors.is_empty() {
+            let view = self.add_view(&[0; 4]);
+            for &i in &self.free.accessors {
+                self.accessors[i] = json!({
+                    "bufferView": view, "componentType": 5126, "count": 1, "type": "SCALAR",
+                });
+            }
         }
         cut(&mut self.views, &mut self.free.views);
         if !self.free.views.is_empty() {
