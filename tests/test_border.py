@@ -135,7 +135,9 @@ def test_the_core_takes_the_largest_that_the_add_on_offers(
         orbflow_native.remesh(*ball(), **wanted | {name: most * 1.01})
 
 
-@pytest.mark.parametrize("name", ["kind", "primitive", "predictor", "small_parts", "borders", "handles"])
+@pytest.mark.parametrize(
+    "name", ["kind", "primitive", "predictor", "small_parts", "borders", "handles"]
+)
 def test_the_add_on_offers_what_the_core_takes(operator: Any, name: str) -> None:  # noqa: ANN401
     offered = {item.identifier.lower().replace("_", "-") for item in operator[name].enum_items}
     # Kind and primitive have no word for it: nothing stands for it there.
