@@ -146,9 +146,8 @@ def torus() -> tuple[Points, NDArray[np.int32]]:
     quads = np.where(quads >= 12 * 32, quads - 12 * 32, quads).astype(np.int32)
     tube, ring = 2 * np.pi * square[: 12 * 32].T
     radius = 1 + 0.3 * np.cos(tube)
-    return np.column_stack(
-        [radius * np.cos(ring), radius * np.sin(ring), 0.3 * np.sin(tube)]
-    ), quads
+    x, y, z = radius * np.cos(ring), radius * np.sin(ring), 0.3 * np.sin(tube)
+    return np.column_stack([x, y, z]), quads
 
 
 def test_a_size_says_which_handles_are_sealed() -> None:

@@ -21,8 +21,10 @@ use crate::progress::Progress;
 
 /// Roots are no farther from each other than this share of the longest loop.
 const SPACING: f64 = 0.25;
-/// Loops of edges are so much longer than tight ones, or may count as longer.
-const CROOKED: f64 = 1.75;
+/// Loops of edges are so much longer than tight ones at most: drawing them tight takes most of the time.
+const CROOKED: f64 = 1.4;
+/// And so much longer, or may count as longer, as seen from a root that is not on them.
+const REACH: f64 = 1.75;
 /// At most so many rounds; most handles are cut in the first two.
 const MOST_ROUNDS: usize = 50;
 
@@ -114,40 +116,41 @@ fn candidates(
     let roots = roots.unwrap_or(&everywhere);
     let mut found: Vec<Candidate> = Vec::new();
     let mut seen = Vec::new();
-    let mut known = HashSet::new();
     for &root in roots {
         if !search.is_free(root) {
             continue;
         }
-        let loops = search.near((root, CROOKED * size), &mut region, progress)?;
+        let loops = search.near((root, REACH * size), &mut region, progress)?;
         if loops.is_empty() {
             continue;
         }
         seen.push(root);
-        for vertices in loops {
-            let mut sorted = vertices.clone();
-            sorted.sort_unstable();
-            if !known.insert(sorted) {
-                continue;
-            }
-            let stops = tighten(mesh, &vertices, |_| false);
-            let tight: Vec<_> = stops.iter().map(|stop| stop.position(mesh)).collect();
-            let length = round(&tight);
-            if length <= size {
-                found.push(Candidate { vertices, length });
-            }
-        }
+        let measured = loops.into_iter().map(|vertices| {
+            let places: Vec<_> = vertices.iter().map(|&v| mesh.position(v)).collect();
+            let length = round(&places);
+            Candidate { vertices, length }
+        });
+        found.extend(measured.filter(|found| found.length <= CROOKED * size));
     }
     found.sort_by(|a, b| a.length.total_cmp(&b.length));
     let mut taken = HashSet::new();
-    found.retain(|candidate| {
-        let is_free = candidate.vertices.iter().all(|v| !taken.contains(v));
-        if is_free {
-            taken.extend(candidate.vertices.iter().copied());
+    let mut tight = Vec::new();
+    for candidate in found {
+        progress.check()?;
+        let vertices = candidate.vertices;
+        if vertices.iter().any(|v| taken.contains(v)) {
+            continue;
         }
-        is_free
-    });
-    Ok((found, seen))
+        let stops = tighten(mesh, &vertices, |_| false);
+        let places: Vec<_> = stops.iter().map(|stop| stop.position(mesh)).collect();
+        let length = round(&places);
+        if length <= size {
+            taken.extend(vertices.iter().copied());
+            tight.push(Candidate { vertices, length });
+        }
+    }
+    tight.sort_by(|a, b| a.length.total_cmp(&b.length));
+    Ok((tight, seen))
 }
 
 /// Those of some loops that can all be cut and leave one piece; longer ones stay first.
