@@ -182,7 +182,7 @@ def exceptions(report: dict[str, Any]) -> list[str]:
     lost = ", ".join(sorted(set(report["lost"])))
     told = [_without_marks(report), f"not carried over: {lost}" if lost else ""]
     told += [_cleaned(report), _welded(report), _parted(report), _shown(report)]
-    told += [_solid(report["solid"])] if report["solid"] else []
+    told += [_solid(report["solid"])] if report.get("solid") else []
     told += filled(report) + _modifiers(report)
     return [each for each in told if each]
 

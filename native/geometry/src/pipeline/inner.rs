@@ -118,10 +118,10 @@ struct Around<'a> {
 impl<'a> Around<'a> {
     fn new(shell: &'a Shell, progress: &Progress<'_>) -> Result<Self, Cancelled> {
         let mesh = &shell.mesh;
-        let triangles = mesh.face_ids().map(|face| mesh.triangle(face)).collect();
+        let triangles: Vec<_> = mesh.face_ids().map(|face| mesh.triangle(face)).collect();
         Ok(Self {
             mesh,
-            winding: Winding::new(triangles),
+            winding: Winding::new(&triangles),
             tree: Bvh::build_of_mesh(mesh, progress)?,
         })
     }

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::carried::CarriedReport;
 use super::clock::Clock;
 use super::frame::{Frame, Prepared};
-use super::kept::count;
+use super::kept::{Kept, count};
 use super::origins::origins;
 use super::{CarriedEdge, Error, Input, Mirror, Remeshed, Settings, shells, taken_apart};
 use crate::clean::{Apart, Cleaned};
@@ -54,11 +54,10 @@ impl Solid {
             count(report.n_shells, "shell"),
             count(report.n_pieces, "closed surface"),
         ];
-        let mut text = format!("{shells} made {pieces}");
-        if !told.is_empty() {
-            text += &format!(" ({})", told.join(", "));
+        if told.is_empty() {
+            return format!("{shells} made {pieces}");
         }
-        text
+        format!("{shells} made {pieces} ({})", told.join(", "))
     }
 }
 
@@ -109,7 +108,8 @@ pub fn run(
         cuts: None,
     };
     let stage = progress.part("", 0.1, 0.97);
-    let mut made = shells((inner, clock), settings, predictor, &stage)?;
+    let made = shells((inner, clock), settings, predictor, &stage);
+    let mut made = made.map_err(unnamed_in)?;
     outer.dress(&mut made, &progress.part("transfer", 0.97, 1.0))?;
     made.report.input = measure::topology(given.mesh, progress)?;
     progress.at(1.0)?;
@@ -123,6 +123,10 @@ impl<'a> Outer<'a> {
         detail_pct: f64,
         progress: &Progress<'_>,
     ) -> Result<Self, Error> {
+        if apart.mesh.n_faces() == 0 {
+            let n_shells = apart.tangles.len();
+            return Err(solid::Error::Nothing { n_shells }.into());
+        }
         let frame = Frame::new(bounds(apart.mesh.positions()));
         let loose = loose(input.mesh, &apart, &frame);
         let surfaces = apart
@@ -183,11 +187,7 @@ impl<'a> Outer<'a> {
         let report = &mut made.report;
         report.solid = Some(self.report);
         report.clean = self.old.report;
-        for reason in report.kept.iter_mut().flat_map(|kept| &mut kept.reasons) {
-            // They would name what nobody has seen.
-            reason.edges.clear();
-            reason.faces.clear();
-        }
+        unnamed(&mut report.kept);
         if report.carried.is_none() && !self.input.carried.is_empty() {
             report.carried = Some(CarriedReport::default());
         }
@@ -202,6 +202,23 @@ impl<'a> Outer<'a> {
         made.origins = origins(&self.input, (&self.old, &self.tree), &mesh, &part)?;
         Ok(())
     }
+}
+
+/// Takes the numbers from reasons: they would name elements of a mesh that nobody has seen.
+fn unnamed(kept: &mut [Kept]) {
+    for reason in kept.iter_mut().flat_map(|kept| &mut kept.reasons) {
+        reason.edges.clear();
+        reason.faces.clear();
+    }
+}
+
+fn unnamed_in(mut error: Error) -> Error {
+    match &mut error {
+        Error::Refused { kept, .. } => unnamed(kept),
+        Error::Unsound { report, .. } => unnamed(&mut report.kept),
+        _ => {}
+    }
+    error
 }
 
 /// The edges of the outer surface that lie along some lines.
@@ -295,3 +312,6 @@ impl Settings {
         Err(Error::DetailOutOfRange { pct })
     }
 }
+
+#[cfg(test)]
+mod tests;

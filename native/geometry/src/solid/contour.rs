@@ -264,12 +264,11 @@ impl Contour<'_> {
                 });
                 let rings: Vec<_> = rings.collect();
                 for (ring, cut, crossing) in rings {
-                    let faces = match cut {
-                        Some(faces) => faces.to_vec(),
-                        None => {
-                            surface.positions.push(self.place(axis, crossing.hit));
-                            ring.fan(VertexId::from_index(surface.positions.len() - 1))
-                        }
+                    let faces = if let Some(faces) = cut {
+                        faces.to_vec()
+                    } else {
+                        surface.positions.push(self.place(axis, crossing.hit));
+                        ring.fan(VertexId::from_index(surface.positions.len() - 1))
                     };
                     let turned = |[a, b, c]: [VertexId; 3]| {
                         if crossing.rises { [a, b, c] } else { [a, c, b] }

@@ -20,7 +20,7 @@ pub struct Outside {
     rows: Vec<u32>,
     /// Where each run begins.
     starts: Vec<u32>,
-    is_outside: Vec<bool>,
+    is_reached: Vec<bool>,
 }
 
 impl Outside {
@@ -35,7 +35,7 @@ impl Outside {
             outside.link(grid, (axis, hits), &mut groups, progress)?;
         }
         let first = groups.root(0);
-        outside.is_outside = (0..outside.starts.len())
+        outside.is_reached = (0..outside.starts.len())
             .map(|run| groups.root(run) == first)
             .collect();
         Ok(outside)
@@ -58,7 +58,7 @@ impl Outside {
             length,
             rows,
             starts,
-            is_outside: Vec::new(),
+            is_reached: Vec::new(),
         }
     }
 
@@ -121,7 +121,7 @@ impl Outside {
         let (row, x) = (vertex / self.length, (vertex % self.length) as u32);
         let [from, to] = [0, 1].map(|i| self.rows[row as usize + i] as usize);
         let run = from + self.starts[from..to].partition_point(|&start| start <= x) - 1;
-        self.is_outside[run]
+        self.is_reached[run]
     }
 }
 

@@ -144,7 +144,7 @@ pub fn solidify(
     settings: &Settings,
     progress: &Progress,
 ) -> Result<Solid, Error> {
-    let job = Job::new(shells, settings)?;
+    let job = Job::new(shells, settings.cell)?;
     let n_shells = job.sorted.n_shells();
     let mut hits = cross::hits(&job.grid, &job.triangles, |i| job.has_area(i), progress)?;
     let mut normals = job.normals.clone();
@@ -193,11 +193,11 @@ struct Job {
 }
 
 impl Job {
-    fn new(shells: &Shells<'_>, settings: &Settings) -> Result<Self, Error> {
+    fn new(shells: &Shells<'_>, cell: f64) -> Result<Self, Error> {
         let mut triangles = shells.triangles();
-        let grid = fitting(&triangles, settings.cell)?;
+        let grid = fitting(&triangles, cell)?;
         let [low, high] = bounds(shells.surfaces.positions());
-        let scrap = pieces::SPECK * low.distance(high) / settings.cell;
+        let scrap = pieces::SPECK * low.distance(high) / cell;
         for triangle in &mut triangles {
             *triangle = triangle.map(|p| grid.enter(p));
         }
@@ -229,7 +229,7 @@ impl Job {
             self.around(hits, |i| sorted.is_sheet[i]),
         );
         if !around_walls.is_empty() {
-            let winding = Winding::new(self.those(&sorted.is_wall));
+            let winding = Winding::new(&self.those(&sorted.is_wall));
             let walls = Walls::new(&self.grid, &winding);
             walls.add(around_walls, (hits, normals), &progress.part("", 0.0, 0.5))?;
         }

@@ -153,8 +153,8 @@ impl Shells<'_> {
         }
         let mut round = 0;
         loop {
-            let all = (0..self.open.len()).flat_map(|i| self.of(i)).collect();
-            let winding = Winding::new(all);
+            let all: Vec<_> = (0..self.open.len()).flat_map(|i| self.of(i)).collect();
+            let winding = Winding::new(&all);
             let shells: Vec<usize> = (0..self.open.len()).collect();
             let means: Vec<f64> = shells.par_iter().map(|&i| self.mean(i, &winding)).collect();
             let inward = |i: &usize| means[*i] <= -WALL;
