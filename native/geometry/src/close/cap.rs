@@ -1,6 +1,7 @@
 //! The mesh while its borders are closed, one after the other.
 
 use std::collections::HashSet;
+use std::ops::Range;
 
 use glam::DVec3;
 
@@ -9,6 +10,7 @@ use super::membrane::refine;
 use super::patch::Patch;
 use super::split::key;
 use super::start;
+use super::tube::Tubes;
 use crate::mesh::{HalfedgeId, Id, TriangleMesh, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
 
@@ -22,6 +24,8 @@ pub struct Sheet<'a> {
     pub faces: Vec<[VertexId; 3]>,
     /// How many faces are real: those that were given and those that fill borders for good.
     pub n_real: usize,
+    /// Which faces are tubes between loops and their caps.
+    pub tubes: Vec<Range<usize>>,
     /// The place of each vertex in the loop that is being closed.
     places: VertexMap<u32>,
 }
@@ -33,6 +37,7 @@ impl<'a> Sheet<'a> {
             positions: mesh.positions().to_vec(),
             faces: mesh.faces().to_vec(),
             n_real: mesh.n_faces(),
+            tubes: Vec::new(),
             places: VertexMap::filled(mesh.n_vertices(), NONE),
         }
     }
@@ -42,17 +47,29 @@ impl<'a> Sheet<'a> {
         [self.mesh.origin(h), self.mesh.target(h)]
     }
 
-    /// Closes a loop by a membrane.
-    pub fn cap(&mut self, border: &[HalfedgeId], progress: &Progress) -> Result<(), Cancelled> {
+    /// Closes a loop by a membrane, at the end of a tube where it gets one.
+    pub fn cap(
+        &mut self,
+        border: &[HalfedgeId],
+        tubes: &Tubes,
+        progress: &Progress,
+    ) -> Result<(), Cancelled> {
         // The faces beyond an edge run through it the other way.
         let ring = border.iter().rev().map(|&h| self.mesh.origin(h));
         let ring: Vec<VertexId> = ring.collect();
-        let points: Vec<DVec3> = ring.iter().map(|&v| self.mesh.position(v)).collect();
+        let chords = self.chords(&ring);
+        let end = self.end_of_tube(&ring, tubes);
+        let is_flush = end.is_none();
+        let (ring, chords) = match end {
+            Some(end) => (end, HashSet::new()),
+            None => (ring, chords),
+        };
+        let points: Vec<DVec3> = ring.iter().map(|v| self.positions[v.index()]).collect();
         let frame = Frame::of(&points);
         let points: Vec<DVec3> = points.into_iter().map(|p| frame.inside(p)).collect();
         progress.check()?;
-        let mut patch = Patch::new(&points, &start::triangles(&points), self.chords(&ring));
-        if self.mesh.n_faces() == 1 {
+        let mut patch = Patch::new(&points, &start::triangles(&points), chords);
+        if self.mesh.n_faces() == 1 && is_flush {
             let [a, b, c] = [0, 1, 2].map(|i| points[i]);
             patch.split_face(0, (a + b + c) / 3.0);
         }

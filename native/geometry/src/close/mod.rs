@@ -23,9 +23,11 @@ mod membrane;
 mod patch;
 mod split;
 mod start;
+mod tube;
 
 use cap::Sheet;
 use frame::Frame;
+pub use tube::Tubes;
 
 use crate::mesh::{
     FaceMap, HalfedgeId, HalfedgeMap, Id, TriangleMesh, TriangleMeshError, VertexId,
@@ -39,6 +41,8 @@ pub struct Settings {
     pub fill: Fill,
     /// What is done with the longest of the other borders.
     pub way: Way,
+    /// What lies between each of them and its cap.
+    pub tubes: Tubes,
 }
 
 /// What is done with the longest border that is not filled; the others get caps in any case.
@@ -132,18 +136,19 @@ pub fn close(
     let loops = mesh.border_loops();
     check(mesh, loops.len())?;
     let mut sheet = Sheet::new(mesh);
+    let tubes = &settings.tubes;
     let (filled, mut open): (Vec<_>, Vec<_>) = loops
         .into_iter()
         .partition(|border| is_filled(mesh, border, settings.fill));
     for (i, border) in filled.iter().enumerate() {
         progress.at(0.3 * i as f64 / filled.len() as f64)?;
-        sheet.cap(border, progress)?;
+        sheet.cap(border, &Tubes::default(), progress)?;
     }
     sheet.n_real = sheet.faces.len();
     let longest = take_longest(mesh, &mut open);
     for (i, border) in open.iter().enumerate() {
         progress.at(0.3 + 0.3 * i as f64 / open.len() as f64)?;
-        sheet.cap(border, progress)?;
+        sheet.cap(border, tubes, progress)?;
     }
     let mut n_capped = open.len();
     let mut n_doubled = 0;
@@ -153,7 +158,7 @@ pub fn close(
             sheet.double(&border, progress)?;
             n_doubled = 1;
         } else {
-            sheet.cap(&border, progress)?;
+            sheet.cap(&border, tubes, progress)?;
             n_capped += 1;
         }
     }
@@ -232,8 +237,10 @@ fn is_sheet(sheet: &Sheet, border: &[HalfedgeId]) -> bool {
         let [a, b, c] = face.map(at);
         (b - a).cross(c - a).length() / 2.0
     };
-    let (real, caps) = sheet.faces.split_at(sheet.n_real);
-    let [real, caps] = [real, caps].map(|faces| faces.iter().map(area).sum::<f64>());
+    let real: f64 = sheet.faces[..sheet.n_real].iter().map(area).sum();
+    let is_tube = |i: &usize| sheet.tubes.iter().any(|tube| tube.contains(i));
+    let caps = (sheet.n_real..sheet.faces.len()).filter(|i| !is_tube(i));
+    let caps: f64 = caps.map(|i| area(&sheet.faces[i])).sum();
     let circle = around * around / (4.0 * std::f64::consts::PI);
     circle - caps > SHEET * real
 }

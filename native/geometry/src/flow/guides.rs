@@ -1,6 +1,6 @@
 //! What quads have to heed besides the shape.
 
-use crate::mesh::{HalfedgeId, HalfedgeMap, VertexMap};
+use crate::mesh::{FaceMap, HalfedgeId, HalfedgeMap, VertexMap};
 use crate::mirror::Doubled;
 
 /// What of a surface's triangles the quads have to heed besides the shape.
@@ -25,4 +25,15 @@ pub struct FirmEdges {
     pub is_corner: VertexMap<bool>,
     /// Loops of them, two and two, along which as many quads shall lie.
     pub twins: Vec<[Vec<HalfedgeId>; 2]>,
+    /// What of the surface counts, where they part it from what does not.
+    pub real: Option<Real>,
+}
+
+/// What of a surface counts when quads are counted.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Real {
+    /// Which of its faces.
+    pub is_real: FaceMap<bool>,
+    /// How many quads are wanted there.
+    pub n_quads: usize,
 }

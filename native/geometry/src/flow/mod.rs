@@ -40,6 +40,6 @@ mod thin;
 pub mod wish;
 
 pub use error::Error;
-pub use guides::{FirmEdges, Guides};
+pub use guides::{FirmEdges, Guides, Real};
 pub use quads::{Flow, Report, flow};
 pub use settings::{Creases, Settings};

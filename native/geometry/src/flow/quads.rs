@@ -3,13 +3,13 @@
 use glam::{DVec2, DVec3};
 use serde::Serialize;
 
-use super::complex::FirmLine;
+use super::complex::{Counted, FirmLine};
 use super::cones::keep_cones;
 use super::conformal::flatten;
 use super::dress::{Dressed, dress};
 use super::error::Error;
 use super::field::OrientationField;
-use super::guides::Guides;
+use super::guides::{Guides, Real};
 use super::laid::{Laid, lay};
 use super::mirror::Plan;
 use super::search::{Quantised, Score, quantise};
@@ -201,16 +201,39 @@ fn whole(
         if settings.creases == Creases::All {
             search.weights.count = COUNT_OF_SOLIDS;
         }
+        let real = guides.firm.and_then(|firm| firm.real.as_ref());
         let firm = plan.lines().enumerate().filter(|(_, line)| line.is_firm);
         let firm = firm.map(|(i, line)| FirmLine {
             line: i,
             ends: line.kept_ends(&complex),
+            is_border: is_border(mesh, real, line.halfedges[0]),
         });
         complex.chains.firm = firm.collect();
+        let counted = real.map(|real| counted(mesh, real, &complex.original));
+        complex.chains.counted = counted.unwrap_or_default();
     }
     let whole = quantise(complex, settings.n_quads, &search, &part)?;
     check(&whole, (settings, plan.is_firm()))?;
     Ok(whole)
+}
+
+/// Whether an edge parts what counts from what does not.
+fn is_border(mesh: &TriangleMesh, real: Option<&Real>, h: HalfedgeId) -> bool {
+    let is_real = |h: HalfedgeId| real.is_some_and(|real| real.is_real[h.face()]);
+    mesh.twin(h).is_some_and(|twin| is_real(h) != is_real(twin))
+}
+
+/// What of a surface counts, by the vertices that were kept of it.
+fn counted(mesh: &TriangleMesh, real: &Real, kept: &[VertexId]) -> Counted {
+    let side = |&v: &VertexId| {
+        let mut sides = mesh.outgoing(v).map(|h| real.is_real[h.face()]);
+        let first = sides.next()?;
+        sides.all(|side| side == first).then_some(first)
+    };
+    Counted {
+        n_wanted: Some(real.n_quads),
+        is_real: kept.iter().map(side).collect(),
+    }
 }
 
 /// The lines of a plan along twin loops of edges, for each two of them.
@@ -242,7 +265,7 @@ fn check(whole: &Quantised, (settings, is_firm): (&Settings, bool)) -> Result<()
     if n_doubled > 0 {
         return Err(Error::Doubled { n_doubled });
     }
-    let [n_quads, n_wanted] = [whole.grid.quads.len(), settings.n_quads];
+    let [n_quads, n_wanted] = [whole.grid.quads.len(), whole.n_wanted];
     let tolerance = if is_firm {
         (n_wanted / SLACK).max(SLACK_OF_FEW.saturating_sub(n_wanted / 2))
     } else {

@@ -111,6 +111,7 @@ impl Work<'_, '_> {
                 reduced: self.reduced,
                 marks: common.marks,
                 density: common.density,
+                has_tubes: false,
             },
         };
         match job.run(self.clock, &progress) {

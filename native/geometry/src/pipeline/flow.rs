@@ -117,7 +117,7 @@ fn ground<'a>(
     let even = told(even(map, (target, &wanted), &quads, progress))?;
     Ok(even.map(|even| Ground {
         sphere: even.sphere.clone(),
-        surface: Surface::new(even, asked.opening),
+        surface: Surface::new(even, (asked.opening, target)),
         target,
         wanted,
         asked,
@@ -149,7 +149,7 @@ fn symmetric(
         Ok((even, doubled)) => {
             let own = ground
                 .surface
-                .doubled((even, doubled), ground.asked.opening);
+                .doubled((even, doubled), (ground.asked.opening, ground.target));
             let usual = std::mem::replace(&mut ground.surface, own);
             let best = ground.best(budget, clock, &progress.part("", 0.05, 0.6))?;
             ground.surface = usual;

@@ -46,8 +46,8 @@ impl Ground {
         let border = closing.as_ref().map(|(closing, _)| closing.border());
         let lines = (&marked, border.as_ref());
         let target = clock.step("deform", || wanted.target((mesh, lines), progress))?;
-        let opening =
-            closing.map(|(closing, small)| closing.opening(&small, wanted.n_faces, progress));
+        let counts = [wanted.n_faces, n_asked];
+        let opening = closing.map(|(closing, small)| closing.opening(&small, counts, progress));
         Ok(Self {
             target,
             marked,

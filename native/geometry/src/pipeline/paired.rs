@@ -273,6 +273,7 @@ mod tests {
             reduced: None,
             marks: &marks,
             density: &density,
+            has_tubes: false,
         };
         let quiet = Progress::none();
         let map = embed_mesh(mesh.clone(), wanted.predictor, &quiet).unwrap();

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::borders::Opened;
+use super::borders::{Closure, Opened};
 use super::clock::Clock;
 use super::crosses::Cross;
 use super::density::Density;
@@ -46,6 +46,8 @@ pub struct Wanted<'a> {
     pub reduced: Option<&'a PolygonMesh>,
     pub marks: &'a Marks,
     pub density: &'a Density,
+    /// Whether all caps of a part with borders lie at the end of tubes.
+    pub has_tubes: bool,
 }
 
 /// What has become of a part.
@@ -62,6 +64,14 @@ pub struct PartResult {
     pub report: PartReport,
 }
 
+impl PartResult {
+    /// Whether quads were to flow and do not, on a part that was not doubled.
+    fn is_stuck(&self) -> bool {
+        let way = self.report.opened.and_then(|opened| opened.way);
+        way != Some(Closure::Doubled) && matches!(self.report.flow, Some(Flowed::Refused { .. }))
+    }
+}
+
 /// A part that faces can be made on: closed, and its own image where that is its role.
 struct Ready<'a> {
     wanted: Wanted<'a>,
@@ -75,7 +85,32 @@ struct Ready<'a> {
 }
 
 impl<'a> PartJob<'a> {
+    /// Makes the faces of a part; where quads with borders do not flow with flush caps, with tubes.
+    ///
+    /// # Errors
+    /// Any of the steps'.
     pub fn run(self, clock: &mut Clock, progress: &Progress<'_>) -> Result<PartResult, Error> {
+        let Self { part, wanted } = self;
+        let is_cut_or_capped = part.euler_number() != 2;
+        let is_spare = is_cut_or_capped && wanted.settings.primitive() == Primitive::Flow;
+        let spare = is_spare.then(|| part.clone());
+        let first = Self { part, wanted }.run_once(clock, &progress.part("", 0.0, 0.9));
+        let Some(part) = spare.filter(|_| first.as_ref().map_or(true, PartResult::is_stuck)) else {
+            return first;
+        };
+        let wanted = Wanted {
+            has_tubes: true,
+            ..wanted
+        };
+        let again = Self { part, wanted };
+        match again.run_once(clock, &progress.part("", 0.9, 1.0)) {
+            Ok(found) if !found.is_stuck() => Ok(found),
+            Err(error) if error.is_cancelled() => Err(error),
+            _ => first,
+        }
+    }
+
+    fn run_once(self, clock: &mut Clock, progress: &Progress<'_>) -> Result<PartResult, Error> {
         let [n_input_faces, n_asked_faces] = [self.part.n_faces(), self.wanted.n_faces];
         let area = measure::total_area(&self.part);
         let ready = self.ready(progress)?;
@@ -119,7 +154,8 @@ impl<'a> PartJob<'a> {
     /// Closes the part and makes it its own image, where it is to be.
     fn ready(self, progress: &Progress<'_>) -> Result<Ready<'a>, Error> {
         let Self { part, wanted } = self;
-        let closing = Closing::new(&part, (wanted.settings, wanted.n_faces), progress)?;
+        let asked = (wanted.settings, wanted.n_faces, wanted.has_tubes);
+        let closing = Closing::new(&part, asked, progress)?;
         let opened = closing.as_ref().and_then(Closing::told);
         let filling = closing.as_ref().map(Closing::filling).unwrap_or_default();
         let (part, closing) = match closing {

@@ -8,7 +8,9 @@ fn cap_of(rim: &[DVec3]) -> TriangleMesh {
     let mesh = vessel(rim, 1.0);
     let mut sheet = Sheet::new(&mesh);
     let border = mesh.border_loops().remove(0);
-    sheet.cap(&border, &Progress::none()).unwrap();
+    sheet
+        .cap(&border, &Tubes::default(), &Progress::none())
+        .unwrap();
     let added = sheet.faces[mesh.n_faces()..].iter().copied();
     let (cap, sources) = TriangleMesh::of_faces(&sheet.positions, added).unwrap();
     assert_eq!(cap.euler_number(), 1);

@@ -34,6 +34,17 @@ pub struct FirmLine {
     pub line: usize,
     /// The vertices at its ends.
     pub ends: [u32; 2],
+    /// Whether it parts what counts from what does not.
+    pub is_border: bool,
+}
+
+/// What of a surface counts when quads are counted.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct Counted {
+    /// How many quads are wanted there, where not all count.
+    pub n_wanted: Option<usize>,
+    /// Whether each vertex lies on it; none on its border.
+    pub is_real: Vec<Option<bool>>,
 }
 
 /// Lines as sums over halfedges; none unless a complex was told to follow some.
@@ -44,6 +55,8 @@ pub struct Chains {
     pub ties: Vec<Tie>,
     /// The lines that have to be met, in order.
     pub firm: Vec<FirmLine>,
+    /// What of the surface counts.
+    pub counted: Counted,
     /// Closed loops of lines that shall be equally long, two and two.
     pub twins: Vec<[Vec<usize>; 2]>,
     /// The terms of each halfedge in the order of the lines; an edge's may be on either side.
@@ -136,6 +149,7 @@ impl Complex {
             ties: Vec::new(),
             twins: Vec::new(),
             firm: Vec::new(),
+            counted: Counted::default(),
             terms: vec![Vec::new(); self.twins.len()],
         };
         for (i, line) in lines.iter().enumerate() {

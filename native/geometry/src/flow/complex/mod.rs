@@ -20,7 +20,7 @@ use glam::DVec2;
 use crate::elementary::angle_to;
 use crate::mesh::{FaceId, HalfedgeId, HalfedgeMap, Id, TriangleMesh, VertexId, VertexMap};
 
-pub use chains::{Chains, FirmLine, Tie};
+pub use chains::{Chains, Counted, FirmLine, Tie};
 pub use check::BrokenComplex;
 pub(in crate::flow) use flip::{flip_moves, move_values};
 pub use located::{Located, LocatedPoints};

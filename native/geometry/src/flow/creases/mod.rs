@@ -12,6 +12,7 @@ mod network;
 mod pick;
 mod rows;
 mod seams;
+mod sides;
 
 use crate::flow::field::OrientationField;
 use crate::flow::guides::FirmEdges;

@@ -3,7 +3,8 @@
 use glam::{DVec2, IVec2};
 
 use super::seams::Walker;
-use crate::flow::complex::{Complex, Tie, Turn};
+use super::sides::Sides;
+use crate::flow::complex::{Complex, Counted, FirmLine, Tie, Turn};
 use crate::flow::periods::{Part, real_row};
 use crate::flow::rings::off_axis;
 
@@ -89,7 +90,16 @@ fn row(complex: &Complex, line: usize) -> Option<Row> {
 
 /// Firm lines as sums of periods, to tell in how many a grid has no straight way between the ends.
 pub struct Firm {
-    lines: Vec<(Vec<IVec2>, [u32; 2])>,
+    lines: Vec<(Vec<IVec2>, FirmLine)>,
+    counted: Counted,
+}
+
+/// What a grid tells of firm lines.
+pub struct Told {
+    /// How many have no straight way.
+    pub n_unmet: usize,
+    /// By how much all quads are to become more, so that those that count are as many as wanted.
+    pub growth: Option<f64>,
 }
 
 impl Firm {
@@ -98,8 +108,9 @@ impl Firm {
         let lines = complex.chains.firm.iter();
         Self {
             lines: lines
-                .map(|firm| (complex.coefficients_along(firm.line), firm.ends))
+                .map(|firm| (complex.coefficients_along(firm.line), *firm))
                 .collect(),
+            counted: complex.chains.counted.clone(),
         }
     }
 
@@ -108,19 +119,32 @@ impl Firm {
         self.lines.is_empty()
     }
 
-    /// How many have no straight way in a grid of the given periods.
-    pub fn n_unmet(&self, (quads, n_vertices): (&[[u32; 4]], usize), periods: &[f64]) -> usize {
+    /// What a grid of the given periods tells of them.
+    pub fn told(&self, (quads, n_vertices): (&[[u32; 4]], usize), periods: &[f64]) -> Told {
+        let mut told = Told {
+            n_unmet: 0,
+            growth: None,
+        };
         if self.lines.is_empty() {
-            return 0;
+            return told;
         }
-        let ends = self.lines.iter().map(|(_, ends)| *ends);
+        let ends = self.lines.iter().map(|(_, firm)| firm.ends);
         let walker = Walker::new(quads, n_vertices).stopping_at(ends);
         let periods = periods.as_chunks::<2>().0;
-        let is_unmet = |(coefficients, ends): &&(Vec<IVec2>, [u32; 2])| {
+        let mut borders = Vec::new();
+        for (coefficients, firm) in &self.lines {
             let span = coefficients.iter().zip(periods);
             let span: DVec2 = span.map(|(c, &x)| c.as_dvec2().rotate(x.into())).sum();
-            walker.along(span, *ends).is_empty()
-        };
-        self.lines.iter().filter(is_unmet).count()
+            let walks = walker.along(span, firm.ends);
+            told.n_unmet += usize::from(walks.is_empty());
+            if firm.is_border {
+                borders.push(walks);
+            }
+        }
+        if let Some(n_wanted) = self.counted.n_wanted.filter(|_| told.n_unmet == 0) {
+            let n_real = Sides::new(quads, &self.counted.is_real).n_real(&borders);
+            told.growth = (n_real > 0).then(|| n_wanted as f64 / n_real as f64);
+        }
+        told
     }
 }

@@ -100,7 +100,11 @@ impl<'a> Place<'a> {
     /// How much worse the count and the distance from the wish would be, without going there. The
     /// area is exact; the distance is that of the triangles here, which may flip on the way.
     fn loses(&self, to: &[f64]) -> f64 {
-        let Candidate { state, score } = &self.best;
+        let Candidate {
+            state,
+            score,
+            n_wanted,
+        } = &self.best;
         let complex = &state.complex;
         let vectors: Vec<DVec2> = (complex.halfedge_ids())
             .map(|h| complex.coefficients.value(h, to))
@@ -113,8 +117,7 @@ impl<'a> Place<'a> {
             .sum();
         let weights = &self.problem.settings.weights;
         let cost = |energy: f64, area: f64| {
-            weights.energy * energy
-                + weights.count * Score::excess_error(area, self.problem.n_quads)
+            weights.energy * energy + weights.count * Score::excess_error(area, *n_wanted)
         };
         cost(energy / area, area) - cost(score.energy, complex.area())
     }
@@ -127,11 +130,11 @@ impl<'a> Place<'a> {
             return None;
         }
         let least = problem.cost(&self.best.score);
-        let score = problem.score(&state);
-        if problem.cost(&score) >= least {
+        let mut found = problem.candidate(state, self.best.n_wanted);
+        if problem.cost(&found.score) >= least {
             return None;
         }
-        let score = problem.completed(score, &state);
-        (problem.cost(&score) < least).then_some(Candidate { state, score })
+        problem.complete(&mut found);
+        (problem.cost(&found.score) < least).then_some(found)
     }
 }

@@ -23,6 +23,7 @@ use super::rounding::Rounding;
 use super::strips::doubled_edges;
 use crate::progress::{Cancelled, Progress};
 
+use score::relative_error;
 pub use score::{Score, Weights};
 
 /// What the search may do and what it looks for.
@@ -64,6 +65,8 @@ pub struct Quantised {
     pub complex: Complex,
     /// Its grid, all of it quads.
     pub grid: Grid,
+    /// How many quads it should have, so that those that count are as many as wanted.
+    pub n_wanted: usize,
     /// What was reached.
     pub report: Report,
 }
@@ -125,6 +128,7 @@ pub fn quantise(
     Ok(Quantised {
         grid: grid::read(&complex)?,
         complex,
+        n_wanted: best.n_wanted.round() as usize,
         report: Report {
             score: best.score,
             n_trials,
@@ -164,6 +168,8 @@ struct Problem<'a> {
 struct Candidate {
     state: State,
     score: Score,
+    /// How many quads it should have, so that those that count are as many as wanted.
+    n_wanted: f64,
 }
 
 impl<'a> Problem<'a> {
@@ -207,23 +213,29 @@ impl<'a> Problem<'a> {
         })
     }
 
-    fn score(&self, state: &State) -> Score {
-        Score::of_lines(&state.complex, &self.wish, self.n_quads)
+    /// A metric of which so many quads are wanted.
+    fn candidate(&self, state: State, n_wanted: f64) -> Candidate {
+        Candidate {
+            score: Score::of_lines(&state.complex, &self.wish, n_wanted),
+            state,
+            n_wanted,
+        }
     }
 
     /// Counts what only the grid tells, which costs most of a trial.
-    fn completed(&self, score: Score, state: &State) -> Score {
+    fn complete(&self, candidate: &mut Candidate) {
+        let Candidate { state, score, .. } = candidate;
         let Ok((quads, n_vertices)) = grid::read_quads(&state.complex) else {
-            return Score {
-                n_doubled: 1,
-                ..score
-            };
+            score.n_doubled = 1;
+            return;
         };
-        let n_unmet = self.firm.n_unmet((&quads, n_vertices), &state.periods);
-        Score {
-            n_doubled: doubled_edges(&quads, n_vertices),
-            n_unmet,
-            ..score
+        let told = self.firm.told((&quads, n_vertices), &state.periods);
+        score.n_doubled = doubled_edges(&quads, n_vertices);
+        score.n_unmet = told.n_unmet;
+        if let Some(growth) = told.growth {
+            let area = state.complex.area();
+            candidate.n_wanted = area * growth;
+            score.count_error = relative_error(area, candidate.n_wanted);
         }
     }
 

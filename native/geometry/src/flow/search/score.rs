@@ -56,7 +56,7 @@ pub struct Score {
     pub n_unmet: usize,
 }
 
-fn relative_error(area: f64, n_wanted: f64) -> f64 {
+pub(super) fn relative_error(area: f64, n_wanted: f64) -> f64 {
     (area / n_wanted - 1.0).abs()
 }
 

@@ -51,7 +51,7 @@ pub(super) fn round_at_scales(problem: &Problem, progress: &Progress) -> Result<
             progress.at(found.n_tried as f64 / n)?;
             let spread = 1.0 + SPREAD * (i as f64 - 2.0);
             scale *= match found.take(problem, &pool, Attempt { scale, worth }) {
-                Some(n_quads) => (problem.n_quads / n_quads).sqrt() * spread,
+                Some(growth) => growth.sqrt() * spread,
                 None if problem.firm.is_empty() => ROOM,
                 None => ROOM_OF_SOLIDS,
             };
@@ -62,7 +62,7 @@ pub(super) fn round_at_scales(problem: &Problem, progress: &Progress) -> Result<
         }
     }
     if let Some(best) = &mut found.best {
-        best.score = problem.completed(best.score, &best.state);
+        problem.complete(best);
     }
     Ok(found)
 }
@@ -82,8 +82,8 @@ fn pool(problem: &Problem) -> Vec<Cylinder> {
 }
 
 impl Found {
-    /// Rounds and keeps the result if it is the best; returns its number of quads if all lines that
-    /// must be are met.
+    /// Rounds and keeps the result if it is the best; returns how many times its quads are wanted
+    /// if all lines that must be are met.
     fn take(&mut self, problem: &Problem, pool: &[Cylinder], attempt: Attempt) -> Option<f64> {
         self.n_tried += 1;
         let Some(candidate) = self.round(problem, pool, attempt) else {
@@ -91,7 +91,7 @@ impl Found {
             return None;
         };
         let is_met = candidate.score.n_unmet == 0;
-        let n_quads = candidate.score.n_quads as f64;
+        let growth = candidate.n_wanted / candidate.score.n_quads as f64;
         let weights = Weights {
             count: COUNT_WEIGHT,
             ..problem.settings.weights
@@ -100,7 +100,7 @@ impl Found {
         if (self.best.as_ref()).is_none_or(|best| cost(&candidate) < cost(best)) {
             self.best = Some(candidate);
         }
-        is_met.then_some(n_quads)
+        is_met.then_some(growth)
     }
 
     fn round(
@@ -119,11 +119,11 @@ impl Found {
             };
             let n_rings = impose(&mut rounding, pool, attempt.scale, greed);
             if let Some(state) = rounding.round() {
-                let mut score = problem.score(&state);
+                let mut candidate = problem.candidate(state, problem.n_quads);
                 if !problem.firm.is_empty() {
-                    score = problem.completed(score, &state);
+                    problem.complete(&mut candidate);
                 }
-                return Some(Candidate { state, score });
+                return Some(candidate);
             }
             if n_rings < 2 || self.n_retries == MOST_RETRIES {
                 return None;

@@ -51,10 +51,10 @@ pub struct Refusal {
 
 impl Surface {
     /// An even surface, its edges along borders firm if it is one of a part that was closed.
-    pub fn new(even: Even, opening: Option<&Opening>) -> Self {
+    pub fn new(even: Even, (opening, target): (Option<&Opening>, &Target)) -> Self {
         let border = opening.zip(even.border);
         Self {
-            border: border.map(|(opening, is_on)| opening.firm(even.map.mesh(), is_on)),
+            border: border.map(|(opening, is_on)| opening.firm(even.map.mesh(), is_on, target)),
             even: even.map,
             lines: even.lines,
             marked: even.marked,
@@ -66,7 +66,7 @@ impl Surface {
     pub fn doubled(
         &self,
         (even, doubled): (SphereMap, Doubled),
-        opening: Option<&Opening>,
+        (opening, target): (Option<&Opening>, &Target),
     ) -> Self {
         let carried = |edges| doubled.carried(self.even.mesh(), edges);
         let border = opening.zip(self.border.as_ref());
@@ -74,7 +74,7 @@ impl Surface {
             lines: carried(&self.lines),
             marked: carried(&self.marked),
             border: border
-                .map(|(opening, firm)| opening.firm(doubled.mesh(), carried(&firm.is_on))),
+                .map(|(opening, firm)| opening.firm(doubled.mesh(), carried(&firm.is_on), target)),
             even,
             doubled: Some(doubled),
         }

@@ -18,6 +18,10 @@ use crate::pipeline::even::Marked;
 use crate::pipeline::{Error, Settings};
 use crate::progress::{Cancelled, Progress};
 
+/// How long the tubes between borders and their caps are, in edges of quads: so there is room for the
+/// four singularities of a cap, and its corners are none of quads.
+const TUBE: f64 = 1.5;
+
 /// A part that was closed.
 pub struct Closing {
     /// The part, open and without handles.
@@ -33,6 +37,8 @@ pub struct Closing {
     pub(super) told: Option<Opened>,
     /// Borders up to this length are filled for good.
     pub(super) asked: f64,
+    /// What lies between the others and their caps.
+    tubes: close::Tubes,
 }
 
 /// A part reduced to the size of the map and closed.
@@ -59,14 +65,14 @@ struct Limits {
 }
 
 impl Closing {
-    /// Cuts the handles of a part that is to get so many faces, and closes its borders; none if it
-    /// has neither.
+    /// Cuts the handles of a part that is to get so many faces, and closes its borders, all with tubes
+    /// or those from which the surface goes on smoothly; none if it has neither.
     ///
     /// # Errors
     /// A part that cannot be closed; when cancelled.
     pub fn new(
         part: &TriangleMesh,
-        (settings, n_faces): (&Settings, usize),
+        (settings, n_faces, has_tubes): (&Settings, usize, bool),
         progress: &Progress<'_>,
     ) -> Result<Option<Self>, Error> {
         let shape = topology_of_triangles(part);
@@ -87,14 +93,20 @@ impl Closing {
             .filter(|border| limits.is_puncture(border.length()))
             .map(|border| Puncture::new(border, edge))
             .collect();
+        let cuts = cut.twins.iter().map(|[one, _]| polyline(&cut.mesh, one));
+        let cuts: Vec<Polyline> = cuts.collect();
         let settings = close::Settings {
             fill: close::Fill::UpTo(limits.closed()),
-            ..close::Settings::default()
+            way: close::Way::Measured,
+            tubes: close::Tubes {
+                length: TUBE * edge,
+                everywhere: has_tubes,
+                flush: cuts.clone(),
+            },
         };
         let closed = close::close(&cut.mesh, &settings, progress)?;
-        let cuts = cut.twins.iter().map(|[one, _]| polyline(&cut.mesh, one));
         Ok(Some(Self {
-            cuts: cuts.collect(),
+            cuts,
             punctures,
             wanted: Topology {
                 n_borders,
@@ -103,6 +115,7 @@ impl Closing {
             },
             told: Opened::new([shape.n_borders, n_filled], closed.n_doubled > 0),
             asked: limits.filled(),
+            tubes: settings.tubes,
             closed,
             open: cut.mesh,
         }))
@@ -163,17 +176,22 @@ impl Closing {
             0 => close::Way::Cap,
             _ => close::Way::Double,
         };
-        close::Settings { fill, way }
+        close::Settings {
+            fill,
+            way,
+            tubes: self.tubes.clone(),
+        }
     }
 
-    /// What the quads have to keep to, and what of them is kept.
+    /// What the quads have to keep to, and what of them is kept; so many are wanted on all of it, and
+    /// on what is real.
     ///
     /// # Errors
     /// When cancelled.
     pub fn opening(
         self,
         small: &Small,
-        n_faces: usize,
+        [n_faces, n_asked]: [usize; 2],
         progress: &Progress<'_>,
     ) -> Result<Opening, Cancelled> {
         let mesh = &self.closed.mesh;
@@ -181,7 +199,12 @@ impl Closing {
         let edge = (total_area(mesh) / n_faces.max(1) as f64).sqrt();
         // Where a handle was cut the surface goes on.
         let is_cut = |p: DVec3| self.cuts.iter().any(|cut| cut.distance(p) < SAME);
-        let mut corners = Loops::new(&self.open, &on_border).corners(mesh, edge);
+        let loops = Loops::new(&self.open, &on_border);
+        let mut corners = if self.tubes.everywhere {
+            loops.calm_corners(mesh, edge)
+        } else {
+            loops.corners(mesh, edge)
+        };
         corners.retain(|&corner| !is_cut(corner));
         let between = small.loops.lines(&small.mesh, (&corners, edge));
         let corners = between.iter().filter_map(|line| {
@@ -204,6 +227,7 @@ impl Closing {
             cuts: self.cuts,
             punctures: self.punctures,
             wanted: self.wanted,
+            n_asked,
             is_real: self.closed.is_real,
         })
     }

@@ -9,6 +9,9 @@ use crate::mesh::{HalfedgeId, HalfedgeMap, Id, TriangleMesh, VertexId};
 /// A border has a corner where it turns by more than this from one half of an edge of a quad to the
 /// next (50°).
 const CORNER: f64 = 0.87;
+/// Two corners nearer to each other than this many edges that turn opposite ways are a step too low
+/// for a quad, and none.
+const STEP: f64 = 1.0;
 /// How far it is looked to either side, in edges of quads.
 const REACH: f64 = 0.5;
 /// But no farther than this share of the loop.
@@ -50,10 +53,17 @@ impl Loops {
 
     /// Where they have corners for quads of some edge length.
     pub fn corners(&self, mesh: &TriangleMesh, edge: f64) -> Vec<DVec3> {
-        let loops = self.0.iter();
-        loops
-            .flat_map(|border| Bends::new(mesh, border, edge).corners())
+        let bends = self.0.iter().map(|border| Bends::new(mesh, border, edge));
+        bends
+            .flat_map(|bends| bends.points_at(&bends.corners()))
             .collect()
+    }
+
+    /// The same without steps that are lower than a quad.
+    pub fn calm_corners(&self, mesh: &TriangleMesh, edge: f64) -> Vec<DVec3> {
+        let bends = self.0.iter().map(|border| Bends::new(mesh, border, edge));
+        let calm = |bends: Bends| bends.points_at(&bends.without_steps(&bends.corners(), edge));
+        bends.flat_map(calm).collect()
     }
 
     /// The loops from corner to corner: each corner's nearest vertex is one, if it is near. Each line
@@ -175,30 +185,62 @@ impl Bends {
         )
     }
 
-    fn turn(&self, i: usize) -> f64 {
+    /// The ways up to a point and from it on.
+    fn ways(&self, i: usize) -> [DVec3; 2] {
         let [before, after] = [-self.reach, self.reach].map(|d| self.at(self.lengths[i] + d));
-        angle_between(self.points[i] - before, after - self.points[i])
+        [self.points[i] - before, after - self.points[i]]
+    }
+
+    fn turn(&self, i: usize) -> f64 {
+        let [before, after] = self.ways(i);
+        angle_between(before, after)
+    }
+
+    /// What it turns about at a point.
+    fn axis(&self, i: usize) -> DVec3 {
+        let [before, after] = self.ways(i);
+        before.cross(after)
     }
 
     /// The points that turn most within reach, of those that turn by more than a corner does.
-    fn corners(&self) -> Vec<DVec3> {
+    fn corners(&self) -> Vec<usize> {
         let n = self.points.len();
         let turns: Vec<f64> = (0..n).map(|i| self.turn(i)).collect();
         let mut order: Vec<usize> = (0..n).filter(|&i| turns[i] > CORNER).collect();
         order.sort_by(|&a, &b| turns[b].total_cmp(&turns[a]).then(a.cmp(&b)));
         let mut taken: Vec<usize> = Vec::new();
-        let whole = self.whole();
-        let away = |a: usize, b: usize| {
-            let apart = (self.lengths[a] - self.lengths[b]).abs();
-            apart.min(whole - apart)
-        };
         for i in order {
-            if taken.iter().all(|&j| away(i, j) > self.reach) {
+            if taken.iter().all(|&j| self.apart(i, j) > self.reach) {
                 taken.push(i);
             }
         }
         taken.sort_unstable();
-        taken.into_iter().map(|i| self.points[i]).collect()
+        taken
+    }
+
+    /// Some corners but for those near each other that turn opposite ways.
+    fn without_steps(&self, corners: &[usize], edge: f64) -> Vec<usize> {
+        let n = corners.len();
+        let is_step = |a: usize, b: usize| {
+            let [one, other] = [corners[a], corners[b]];
+            let is_near = self.apart(one, other) < STEP * edge;
+            a != b && is_near && self.axis(one).dot(self.axis(other)) < 0.0
+        };
+        let stays = |&a: &usize| {
+            let beside = [(a + n - 1) % n, (a + 1) % n];
+            !beside.into_iter().any(|b| is_step(a, b))
+        };
+        (0..n).filter(stays).map(|a| corners[a]).collect()
+    }
+
+    /// How far two points are from each other along the loop.
+    fn apart(&self, a: usize, b: usize) -> f64 {
+        let apart = (self.lengths[a] - self.lengths[b]).abs();
+        apart.min(self.whole() - apart)
+    }
+
+    fn points_at(&self, corners: &[usize]) -> Vec<DVec3> {
+        corners.iter().map(|&i| self.points[i]).collect()
     }
 }
 
@@ -250,5 +292,23 @@ mod tests {
                 .iter()
                 .all(|line| line.line.is_closed() && line.ends.is_none())
         );
+    }
+
+    #[test]
+    fn a_step_lower_than_a_quad_has_no_calm_corners() {
+        let mesh = grid(16);
+        // The vertices of one half of a side are drawn out.
+        let [low, high] = crate::mesh::bounds(mesh.positions());
+        let width = high.x - low.x;
+        let drawn = |p: &DVec3| {
+            let is_out = p.x > high.x - 1e-9 && p.y > low.y + 0.45 * width;
+            *p + DVec3::X * if is_out { 0.12 * width } else { 0.0 }
+        };
+        let stepped = mesh.with_positions(mesh.positions().iter().map(drawn).collect());
+        let loops = Loops::all(&stepped);
+        let corners = |edge: f64| loops.corners(&stepped, edge * width).len();
+        let calm = |edge: f64| loops.calm_corners(&stepped, edge * width).len();
+        assert_eq!([corners(0.2), calm(0.2)], [6, 4]);
+        assert_eq!([corners(0.1), calm(0.1)], [6, 6]);
     }
 }

@@ -61,6 +61,8 @@ pub struct Opening {
     punctures: Vec<Puncture>,
     /// The shape that is to come out.
     wanted: Topology,
+    /// How many quads are wanted on what is real.
+    n_asked: usize,
     /// The corners of the borders.
     corners: Vec<Corner>,
     /// Which faces of the target are real.

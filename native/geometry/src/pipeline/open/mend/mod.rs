@@ -145,3 +145,93 @@ fn beside(face: &[VertexId], v: VertexId) -> Option<[VertexId; 2]> {
     let n = face.len();
     Some([face[(at + n - 1) % n], face[(at + 1) % n]])
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::deform::Report;
+    use crate::mesh::TriangleMesh;
+
+    /// A flat sheet of n × n unit squares, as a surface and its border.
+    fn ground(n: u32) -> (Target, Bvh, Vec<DVec3>) {
+        let side = f64::from(n);
+        let corners = [[0.0, 0.0], [side, 0.0], [side, side], [0.0, side]];
+        let corners = corners.map(|[x, y]| DVec3::new(x, y, 0.0));
+        let faces = [[0, 1, 2], [0, 2, 3]].map(|face| face.map(VertexId));
+        let sheet = TriangleMesh::new(corners.to_vec(), faces.to_vec()).unwrap();
+        let target = Target::new(sheet, &Progress::none()).unwrap();
+        let sides = (0..4).map(|i| [corners[i], corners[(i + 1) % 4], corners[(i + 1) % 4]]);
+        let sides: Vec<_> = sides.collect();
+        (target, Bvh::new(&sides), corners.to_vec())
+    }
+
+    fn grid(n: u32) -> (Vec<DVec3>, Vec<Vec<u32>>) {
+        let points = (0..=n).flat_map(|y| (0..=n).map(move |x| [x, y]));
+        let points = points.map(|[x, y]| DVec3::new(f64::from(x), f64::from(y), 0.0));
+        let id = move |x: u32, y: u32| y * (n + 1) + x;
+        let squares = (0..n).flat_map(|y| (0..n).map(move |x| [x, y]));
+        let quad = |[x, y]: [u32; 2]| vec![id(x, y), id(x + 1, y), id(x + 1, y + 1), id(x, y + 1)];
+        (points.collect(), squares.map(quad).collect())
+    }
+
+    /// What becomes of some quads on the sheet, and their borders' vertices.
+    fn mended(n: u32, points: Vec<DVec3>, quads: &[Vec<u32>]) -> Deformed {
+        let (target, line, corners) = ground(n);
+        let bed = Bed {
+            target: &target,
+            line: Some(&line),
+            is_corner: &|p| corners.iter().any(|&corner| is_same(corner, p)),
+        };
+        let mesh = PolygonMesh::from_faces(points, quads).unwrap();
+        let sphere = vec![DVec3::Z; mesh.n_vertices()];
+        let quiet = Progress::none();
+        let positions = mesh.positions().to_vec();
+        let before = Deformed {
+            mesh,
+            sphere,
+            features: Vec::new(),
+            led: Vec::new(),
+            report: Report::default(),
+        };
+        let before = before.moved(positions);
+        assert!(before.report.n_inverted > 0);
+        bed.mended(before, &quiet).unwrap()
+    }
+
+    #[test]
+    fn border_vertices_that_passed_each_other_go_back_along_the_border() {
+        let (mut points, quads) = grid(4);
+        points[1].x = 2.4;
+        points[7].x = 3.4;
+        let found = mended(4, points, &quads);
+        assert_eq!((found.report.n_inverted, found.mesh.n_faces()), (0, 16));
+        let row = &found.mesh.positions()[..5];
+        assert!(row.iter().all(|p| p.y.abs() < 1e-9 && p.z.abs() < 1e-9));
+        assert!(row.windows(2).all(|pair| pair[0].x < pair[1].x));
+    }
+
+    #[test]
+    fn a_vertex_between_two_edges_of_one_quad_on_a_straight_border_is_opened() {
+        let (points, mut quads) = grid(6);
+        // The edge between the middle of a side and the vertex above it is turned.
+        quads[2] = vec![2, 3, 4, 11];
+        quads[3] = vec![2, 11, 10, 9];
+        let found = mended(6, points, &quads);
+        assert_eq!(found.report.n_inverted, 0);
+        let on_side = |p: &&DVec3| p.y.abs() < 0.1;
+        assert_eq!(found.mesh.positions().iter().filter(on_side).count(), 7);
+    }
+
+    #[test]
+    fn two_quads_at_a_vertex_become_one() {
+        let (mut points, mut quads) = grid(4);
+        points.push(DVec3::new(1.5, 1.5, 0.0));
+        quads[5] = vec![6, 7, 12, 25];
+        quads.push(vec![6, 25, 12, 11]);
+        let found = mended(4, points, &quads);
+        assert_eq!((found.report.n_inverted, found.mesh.n_faces()), (0, 16));
+        assert_eq!(found.mesh.n_vertices(), 25);
+    }
+}

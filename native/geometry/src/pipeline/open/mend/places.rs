@@ -17,6 +17,8 @@ const BAD: f64 = 0.1;
 const ENOUGH: f64 = 0.25;
 /// How far away the places are that a vertex tries, in mean edges.
 const REACHES: [f64; 6] = [0.8, 0.4, 0.2, 0.1, 0.05, 0.02];
+/// And on a border no farther than this share of the way to the next vertex.
+const MOST_OF_WAY: f64 = 0.8;
 /// Rounds over the vertices of bad quads.
 const N_ROUNDS: usize = 30;
 /// Rings of quads round a knot that are pulled smooth with it, at most.
@@ -25,6 +27,12 @@ const MOST_RINGS: usize = 3;
 const N_SMOOTHINGS: usize = 8;
 /// What a vertex a mean edge away from where it was costs, against 0.06 for a quad without area.
 const COST: f64 = 0.02;
+/// What a border costs whose edges at a vertex have their middles a mean edge off the part's.
+const OFF_BORDER: f64 = 1.0;
+/// No vertex goes farther than this, in mean edges.
+const FARTHEST: f64 = 0.6;
+/// How far a vertex between two edges of one quad on a straight border leaves it, in mean edges.
+const BULGES: [f64; 2] = [0.06, 0.03];
 /// The least share by which a move has to lower the sum of both.
 const LEAST_GAIN: f64 = 1e-4;
 /// A quad whose own normal is farther than this from that of the surface has both to agree with.
@@ -52,6 +60,8 @@ pub struct Places<'a> {
     starts: Vec<DVec3>,
     pub positions: Vec<DVec3>,
     edge: f64,
+    /// Whether vertices may leave the surface.
+    is_loose: bool,
 }
 
 impl<'a> Places<'a> {
@@ -84,12 +94,17 @@ impl<'a> Places<'a> {
             bed,
             stands,
             edge,
+            is_loose: false,
         })
     }
 
     /// Moves the vertices of bad quads until none is inverted or no move helps.
     pub fn untangle(&mut self, progress: &Progress<'_>) -> Result<(), Cancelled> {
         self.open_all(progress)?;
+        self.is_loose = true;
+        if !self.worse_than(0.0).is_empty() {
+            self.open_all(progress)?;
+        }
         for n_rings in 1..=MOST_RINGS {
             let knots = self.worse_than(0.0);
             if knots.is_empty() {
@@ -125,11 +140,12 @@ impl<'a> Places<'a> {
         let start = self.starts[v.index()];
         let cost = |at: DVec3| {
             let way = at.distance_squared(start) / (self.edge * self.edge);
-            self.badness(v, at) + COST * way
+            self.badness(v, at) + COST * way + OFF_BORDER * self.off_border(v, at)
         };
         let before = cost(self.positions[v.index()]);
         let mut best = (before * (1.0 - LEAST_GAIN), None);
-        for there in self.around(v) {
+        let is_near = |there: &DVec3| there.distance(start) <= FARTHEST * self.edge;
+        for there in self.around(v).into_iter().filter(is_near) {
             let cost = cost(there);
             if cost < best.0 {
                 best = (cost, Some(there));
@@ -149,20 +165,65 @@ impl<'a> Places<'a> {
             Stand::Fixed => Vec::new(),
             Stand::Along(beside) => {
                 let ways = beside.map(|u| self.positions[u.index()] - now);
-                let within =
-                    |way: DVec3, reach: f64| way.clamp_length_max(reach.min(0.8 * way.length()));
+                let within = |way: DVec3, reach: f64| {
+                    let longest = MOST_OF_WAY * way.length();
+                    way.clamp_length_max(longest).clamp_length_max(reach)
+                };
                 let all = reaches.flat_map(|reach| ways.map(|way| now + within(way, reach)));
-                all.filter_map(|there| Some(self.bed.line?.closest(there).position))
+                let on_line = |there| Some(self.bed.line?.closest(there).position);
+                all.filter_map(on_line)
+                    .chain(self.bulges(v, beside))
                     .collect()
             }
             Stand::Free => {
                 let normal = self.normals[v.index()];
-                let ways: Vec<DVec3> = ways(normal).into_iter().chain([normal, -normal]).collect();
-                reaches
-                    .flat_map(|reach| ways.iter().map(move |way| now + *way * reach))
-                    .collect()
+                let off = self.is_loose.then_some([normal, -normal]);
+                let ways: Vec<DVec3> = (ways(normal).into_iter())
+                    .chain(off.into_iter().flatten())
+                    .collect();
+                let all = reaches.flat_map(|reach| ways.iter().map(move |way| now + *way * reach));
+                all.filter_map(|there| self.laid(v, there)).collect()
             }
         }
+    }
+
+    /// A place on the surface, or as it is where vertices may leave it.
+    fn laid(&self, v: VertexId, there: DVec3) -> Option<DVec3> {
+        if self.is_loose {
+            return Some(there);
+        }
+        let normal = self.normals[v.index()];
+        let foot = self.bed.target.closest_agreeing(there, normal, self.edge)?;
+        Some(foot.position)
+    }
+
+    /// Places beside a straight border for a vertex that has one quad alone there.
+    fn bulges(&self, v: VertexId, beside: [VertexId; 2]) -> Vec<DVec3> {
+        let &[face] = &self.around[v.index()][..] else {
+            return Vec::new();
+        };
+        let corners = self.mesh.face(face).iter();
+        let middle = corners.map(|u| self.positions[u.index()]).sum::<DVec3>() / 4.0;
+        let now = self.starts[v.index()];
+        let [a, b] = beside.map(|u| self.positions[u.index()]);
+        let out = (now - middle).reject_from((b - a).normalize_or(DVec3::X));
+        let out = out.normalize_or_zero();
+        let bulges = BULGES.into_iter().filter(|_| self.is_loose);
+        bulges
+            .map(|share| now + out * (share * self.edge))
+            .collect()
+    }
+
+    /// How far the middles of a vertex's edges are off the border in mean edges, squared.
+    fn off_border(&self, v: VertexId, there: DVec3) -> f64 {
+        let (Stand::Along(beside), Some(line)) = (self.stands[v.index()], self.bed.line) else {
+            return 0.0;
+        };
+        let off = |u: VertexId| {
+            let middle = there.midpoint(self.positions[u.index()]);
+            line.closest(middle).distance_squared / (self.edge * self.edge)
+        };
+        beside.into_iter().map(off).sum()
     }
 
     /// How bad the quads of a vertex are once it is somewhere.
