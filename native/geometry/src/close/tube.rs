@@ -165,7 +165,7 @@ impl Sheet<'_> {
 mod tests {
     use super::*;
     use crate::close::tests::{sampled, star, vessel};
-    use crate::close::{Settings, close};
+    use crate::close::{Settings, Way, close};
     use crate::mesh::TriangleMesh;
     use crate::progress::Progress;
 
@@ -180,6 +180,7 @@ mod tests {
     /// How far beyond a vessel's rim its closed version reaches.
     fn height(mesh: &TriangleMesh, tubes: Tubes) -> f64 {
         let settings = Settings {
+            way: Way::Cap,
             tubes,
             ..Settings::default()
         };
