@@ -35,7 +35,7 @@ pub struct Tubes {
     pub length: f64,
     /// Whether loops get one too where it turns away from the surface.
     pub everywhere: bool,
-    /// Lines along which loops get none.
+    /// Lines along which loops get none but then.
     pub flush: Vec<Polyline>,
 }
 
@@ -88,7 +88,7 @@ impl Sheet<'_> {
             let mut places = ring.points.iter();
             places.all(|&p| line.distance(p) <= ALONG * tubes.length)
         };
-        if tubes.flush.iter().any(lies) {
+        if !tubes.everywhere && tubes.flush.iter().any(lies) {
             return None;
         }
         let ways = self.ways(&ring)?;
@@ -165,7 +165,7 @@ impl Sheet<'_> {
 mod tests {
     use super::*;
     use crate::close::tests::{sampled, star, vessel};
-    use crate::close::{Settings, close};
+    use crate::close::{Settings, Way, close};
     use crate::mesh::TriangleMesh;
     use crate::progress::Progress;
 
@@ -180,6 +180,7 @@ mod tests {
     /// How far beyond a vessel's rim its closed version reaches.
     fn height(mesh: &TriangleMesh, tubes: Tubes) -> f64 {
         let settings = Settings {
+            way: Way::Cap,
             tubes,
             ..Settings::default()
         };
@@ -225,7 +226,7 @@ mod tests {
         let round = rim.iter().chain(rim.first()).copied().collect();
         let tubes = Tubes {
             flush: vec![Polyline::new(round, true)],
-            ..tubes(true)
+            ..tubes(false)
         };
         assert!(height(&pipe, tubes).abs() < 1e-9);
     }

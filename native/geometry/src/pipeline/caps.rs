@@ -21,7 +21,7 @@ impl Wanted<'_> {
         clock: &mut Clock,
         progress: &Progress<'_>,
     ) -> Result<PartResult, Error> {
-        let can_have_tubes = !whole.shape.closed && self.settings.primitive() == Primitive::Flow;
+        let can_have_tubes = self.settings.primitive() == Primitive::Flow;
         let share = if can_have_tubes { 0.9 } else { 1.0 };
         let first = self.run((whole.clone(), came), clock, &progress.part("", 0.0, share));
         if !can_have_tubes || !first.as_ref().map_or(true, is_stuck) {
@@ -40,8 +40,8 @@ impl Wanted<'_> {
     }
 }
 
-/// Whether quads of a part with caps were to flow and do not.
+/// Whether quads were to flow and do not, on a part that was not doubled.
 fn is_stuck(found: &PartResult) -> bool {
     let way = found.report.opened.and_then(|opened| opened.way);
-    way == Some(Closure::Capped) && matches!(found.report.flow, Some(Flowed::Refused { .. }))
+    way != Some(Closure::Doubled) && matches!(found.report.flow, Some(Flowed::Refused { .. }))
 }
