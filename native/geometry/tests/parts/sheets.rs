@@ -73,7 +73,7 @@ fn a_stem_that_stays_has_the_vertices_of_the_wall() {
 #[test]
 fn boxes_at_an_edge_or_at_a_corner_stay_together() {
     for (at, n_lines) in [([1, 1, 0], 1), ([1, 1, 1], 0)] {
-        let mut points: Vec<[f64; 3]> = Vec::new();
+        let mut points: Vec<[u32; 3]> = Vec::new();
         let mut quads: Vec<[u32; 4]> = Vec::new();
         let sides = [
             [0, 2, 3, 1],
@@ -84,7 +84,7 @@ fn boxes_at_an_edge_or_at_a_corner_stay_together() {
             [1, 3, 7, 5],
         ];
         for from in [[0, 0, 0], at] {
-            let corner = |i: u32| [0, 1, 2].map(|k| f64::from(from[k]) + f64::from(i >> k & 1));
+            let corner = |i: u32| [0, 1, 2].map(|k| from[k] + (i >> k & 1));
             let mut name = |i: u32| {
                 let found = points.iter().position(|p| *p == corner(i));
                 found.unwrap_or_else(|| {
@@ -96,6 +96,7 @@ fn boxes_at_an_edge_or_at_a_corner_stay_together() {
         }
         let mut boxes = Mixed::default();
         let faces: Vec<&[u32]> = quads.iter().map(<[u32; 4]>::as_slice).collect();
+        let points: Vec<[f64; 3]> = points.iter().map(|p| p.map(f64::from)).collect();
         boxes.add_faces(&points, &faces);
         let report = remesh(&boxes.mesh(), &settings(48)).unwrap().report;
         assert_eq!(report.parts.len(), 2);
