@@ -7,6 +7,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::corners::Corners;
+use super::line::on_segment;
 use super::{Corner, Edge, Given, Line, Strand, sorted};
 use crate::mesh::{FaceId, Id, PolygonMesh, VertexId, bounds};
 
@@ -60,6 +61,8 @@ struct Edges {
     ends: Vec<Edge>,
     /// The vertex after each along the border, which goes on from face to face.
     along_border: BTreeMap<VertexId, VertexId>,
+    /// How many meet at each vertex.
+    valences: BTreeMap<VertexId, usize>,
     mean: f64,
 }
 
@@ -78,23 +81,21 @@ impl<'a> Sheets<'a> {
         self.edges[sheet].mean
     }
 
-    /// The vertices of a sheet, or of its border, that are near a place, and how far they are.
+    /// The vertices of a sheet, or of its border, that are near a place, and how far they are; where
+    /// nothing ends there, those from which edges lead inside.
     pub(super) fn near(
         &self,
         sheet: usize,
         (place, reach): (DVec3, f64),
-        is_border: bool,
+        (is_border, ends_there): (bool, bool),
     ) -> Vec<(VertexId, f64)> {
         let edges = &self.edges[sheet];
-        let mut vertices: Vec<VertexId> = if is_border {
-            edges.along_border.keys().copied().collect()
-        } else {
-            edges.ends.concat()
+        let is_fit = |(v, n): &(&VertexId, &usize)| {
+            (!is_border || edges.along_border.contains_key(v)) && (ends_there || **n > 2)
         };
-        vertices.sort_unstable();
-        vertices.dedup();
+        let vertices = edges.valences.iter().filter(is_fit).map(|(&v, _)| v);
         let off = |v: VertexId| (v, self.mesh.position(v).distance(place));
-        let all = vertices.into_iter().map(off);
+        let all = vertices.map(off);
         all.filter(|&(_, off)| off <= reach).collect()
     }
 
@@ -245,8 +246,14 @@ impl Edges {
         let mean = sides.iter().map(length).sum::<f64>() / sides.len().max(1) as f64;
         let runs = || sides.chunk_by(|a, b| a.0 == b.0);
         let border = runs().filter(|run| run.len() == 1);
+        let ends: Vec<Edge> = runs().map(|run| run[0].0).collect();
+        let mut valences = BTreeMap::new();
+        for &v in ends.iter().flatten() {
+            *valences.entry(v).or_default() += 1;
+        }
         Self {
-            ends: runs().map(|run| run[0].0).collect(),
+            ends,
+            valences,
             along_border: border.map(|run| (run[0].1[0], run[0].1[1])).collect(),
             mean,
         }
@@ -326,8 +333,9 @@ impl<'a> Near<'a> {
     /// The best way between two vertices.
     fn way(&self, line: &Line, [first, last]: [VertexId; 2]) -> Option<Vec<VertexId>> {
         let mut before: BTreeMap<VertexId, VertexId> = BTreeMap::new();
-        let mut heap = BinaryHeap::from([Reverse((Cost(0.0), first, first))]);
-        while let Some(Reverse((cost, v, from))) = heap.pop() {
+        // The bits of positive numbers are ordered as the numbers are.
+        let mut heap = BinaryHeap::from([Reverse((0_u64, first, first))]);
+        while let Some(Reverse((bits, v, from))) = heap.pop() {
             if before.contains_key(&v) {
                 continue;
             }
@@ -341,7 +349,8 @@ impl<'a> Near<'a> {
                 }
                 let [p, q] = [v, w].map(|v| self.mesh.position(v));
                 let off = line.distance(p.midpoint(q)) + line.distance(q);
-                heap.push(Reverse((Cost(cost.0 + p.distance(q) + OFF * off), w, v)));
+                let cost = f64::from_bits(bits) + p.distance(q) + OFF * off;
+                heap.push(Reverse((cost.to_bits(), w, v)));
             }
         }
         before.get(&last)?;
@@ -377,89 +386,5 @@ impl<'a> Near<'a> {
         once.sort_unstable();
         once.dedup();
         (once.len() == round.len()).then_some(round)
-    }
-}
-
-impl Line {
-    /// Its pieces.
-    pub(super) fn pieces(&self) -> impl Iterator<Item = [DVec3; 2]> {
-        let next = self.points.iter().cycle().skip(1);
-        let n = self.points.len() - usize::from(!self.is_closed);
-        self.points.iter().zip(next).take(n).map(|(&a, &b)| [a, b])
-    }
-
-    /// The nearest point on the line.
-    pub(super) fn closest(&self, point: DVec3) -> DVec3 {
-        let places = self.pieces().map(|piece| on_segment(piece, point));
-        let off = |p: &DVec3| p.distance_squared(point);
-        let nearest = places.min_by(|p, q| off(p).total_cmp(&off(q)));
-        nearest.unwrap_or(point)
-    }
-
-    /// How far a point is from the line.
-    pub(super) fn distance(&self, point: DVec3) -> f64 {
-        self.closest(point).distance(point)
-    }
-
-    /// The share of the line before the place that is nearest to a point.
-    pub(super) fn share(&self, point: DVec3) -> f64 {
-        let mut best = (f64::INFINITY, 0.0);
-        let mut length = 0.0;
-        for [a, b] in self.pieces() {
-            let at = on_segment([a, b], point);
-            if at.distance(point) < best.0 {
-                best = (at.distance(point), length + a.distance(at));
-            }
-            length += a.distance(b);
-        }
-        best.1 / length.max(f64::MIN_POSITIVE)
-    }
-
-    /// The place at a share of the line.
-    pub(super) fn at(&self, share: f64) -> DVec3 {
-        let length: f64 = self.pieces().map(|[a, b]| a.distance(b)).sum();
-        let mut left = share * length;
-        for [a, b] in self.pieces() {
-            let step = a.distance(b);
-            if left <= step && step > 0.0 {
-                return a.lerp(b, (left / step).clamp(0.0, 1.0));
-            }
-            left -= step;
-        }
-        self.points[if self.is_closed {
-            0
-        } else {
-            self.points.len() - 1
-        }]
-    }
-}
-
-/// The point of a segment nearest to another.
-fn on_segment([a, b]: [DVec3; 2], point: DVec3) -> DVec3 {
-    let along = b - a;
-    let share = (point - a).dot(along) / along.length_squared();
-    let share = if share.is_finite() {
-        share.clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    a + along * share
-}
-
-/// A number that is sorted by.
-#[derive(Clone, Copy, PartialEq)]
-struct Cost(f64);
-
-impl Eq for Cost {}
-
-impl PartialOrd for Cost {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Cost {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.0.total_cmp(&other.0)
     }
 }

@@ -41,7 +41,8 @@ impl Corners {
         for (&corner, &(place, ends_there)) in &wanted {
             let mean = sheets.mean(corner.sheet);
             let is_border = ends_there || sheets.off_border(corner.sheet, place) < ON_BORDER * mean;
-            let near = sheets.near(corner.sheet, (place, FARTHEST * mean), is_border);
+            let kind = (is_border, ends_there);
+            let near = sheets.near(corner.sheet, (place, FARTHEST * mean), kind);
             pairs.extend(near.into_iter().map(|(v, off)| (off, corner, v)));
         }
         pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));

@@ -38,8 +38,24 @@ impl<'a> Joining<'a> {
         }
     }
 
+    /// Joins those chains of a line that have equally many vertices; these, if they are those of all
+    /// its sheets.
+    pub(super) fn all_of(&mut self, line: &Line, chains: &[Chain]) -> Option<Vec<VertexId>> {
+        let mut chains: Vec<&Chain> = chains.iter().collect();
+        chains.sort_by_key(|chain| (chain.vertices.len(), !chain.is_border));
+        // Most alike; of equally many the longest.
+        let alike = chains
+            .chunk_by(|a, b| a.vertices.len() == b.vertices.len())
+            .max_by_key(|alike| alike.len())?;
+        let n = alike[0].vertices.len();
+        let may_join = (alike.len() > 1 || line.stays) && n >= line.fewest();
+        let joins = may_join && self.join(line, alike);
+        let are_all = joins && alike.len() == line.strands.len();
+        are_all.then(|| alike[0].vertices.clone())
+    }
+
     /// Joins chains of equally many vertices on a line, unless a face would lose a corner.
-    pub(super) fn join(&mut self, line: &Line, chains: &[Chain]) -> bool {
+    fn join(&mut self, line: &Line, chains: &[&Chain]) -> bool {
         let n = chains[0].vertices.len();
         let sets: Vec<Vec<VertexId>> = (0..n)
             .map(|i| chains.iter().map(|chain| chain.vertices[i]).collect())
@@ -94,7 +110,7 @@ impl<'a> Joining<'a> {
 
     /// Where some vertices of chains are joined: on the line, in the middle of the sheets that end
     /// there, or go on, with counts that were not changed.
-    fn goal(&mut self, line: &Line, chains: &[Chain], i: usize) -> DVec3 {
+    fn goal(&mut self, line: &Line, chains: &[&Chain], i: usize) -> DVec3 {
         let last = chains[0].vertices.len() - 1;
         match (line.is_closed, i) {
             (false, 0) => return line.points[0],
@@ -102,7 +118,7 @@ impl<'a> Joining<'a> {
             _ => {}
         }
         let key = |chain: &Chain| (chain.is_changed, !chain.is_border);
-        let best = chains.iter().map(key).min();
+        let best = chains.iter().map(|chain| key(chain)).min();
         let counting = chains.iter().filter(|chain| Some(key(chain)) == best);
         let (mut sum, mut n) = (DVec3::ZERO, 0.0);
         for chain in counting {

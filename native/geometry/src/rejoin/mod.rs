@@ -16,6 +16,7 @@
 mod chain;
 mod corners;
 mod joining;
+mod line;
 mod posts;
 mod room;
 mod strips;
@@ -32,6 +33,7 @@ use crate::progress::{Cancelled, Progress};
 use chain::Sheets;
 use corners::Corners;
 use joining::Joining;
+use strips::Leveled;
 
 /// A line along which sheets meet.
 #[derive(Clone, PartialEq, Debug)]
@@ -142,24 +144,9 @@ pub fn rejoin(
     let leveled = strips::level(given, (lines, chains), progress)?;
     let mut joining = Joining::new(&leveled.mesh);
     let mut joined = Vec::with_capacity(lines.len());
-    for (line, mut chains) in lines.iter().zip(leveled.chains) {
+    for (line, chains) in lines.iter().zip(&leveled.chains) {
         progress.check()?;
-        let are_found = chains.len() == line.strands.len();
-        chains.sort_by_key(|chain| (chain.vertices.len(), !chain.is_border));
-        // Most alike; of equally many the longest.
-        let alike = chains
-            .chunk_by(|a, b| a.vertices.len() == b.vertices.len())
-            .max_by_key(|alike| alike.len());
-        let joins = alike.filter(|alike| alike.len() > 1 || line.stays);
-        let joins = joins.filter(|alike| alike[0].vertices.len() >= line.fewest());
-        let joins = joins.is_some_and(|alike| joining.join(line, alike));
-        let alike = alike.filter(|alike| alike.len() == line.strands.len());
-        let is_one = joins && are_found;
-        joined.push(
-            alike
-                .filter(|_| is_one)
-                .map(|alike| alike[0].vertices.clone()),
-        );
+        joined.push(joining.all_of(line, chains));
     }
     let mut touched = Vec::with_capacity(touches.len());
     for touch in touches {
@@ -169,6 +156,18 @@ pub fn rejoin(
     }
     joining.make_room(&leveled.features);
     let (mesh, named) = joining.joined();
+    Ok(told((leveled, mesh), &named, (joined, touched)))
+}
+
+/// Vertices along each line that was joined, and at each point.
+type Joined = (Vec<Option<Vec<VertexId>>>, Vec<Option<VertexId>>);
+
+/// What has become of sheets whose vertices have new names.
+fn told(
+    (leveled, mesh): (Leveled, PolygonMesh),
+    named: &VertexMap<VertexId>,
+    (joined, touched): Joined,
+) -> Rejoined {
     let mut from = vec![None; mesh.n_vertices()];
     for (&name, &of) in named.iter().zip(leveled.from.iter()) {
         from[name.index()].get_or_insert(of);
@@ -178,7 +177,7 @@ pub fn rejoin(
         .map(|ends| sorted(ends.map(|v| named[v])))
         .collect();
     let along = |chain: Vec<VertexId>| chain.into_iter().map(|v| named[v]).collect();
-    Ok(Rejoined {
+    Rejoined {
         n_faces: leveled.n_faces,
         is_changed: leveled.is_changed,
         name: leveled.name.iter().map(|&v| named[v]).collect(),
@@ -187,7 +186,7 @@ pub fn rejoin(
         joined: joined.into_iter().map(|chain| chain.map(along)).collect(),
         touched: touched.iter().map(|v| v.map(|v| named[v])).collect(),
         mesh,
-    })
+    }
 }
 
 fn sorted([a, b]: Edge) -> Edge {

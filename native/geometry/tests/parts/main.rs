@@ -231,12 +231,15 @@ fn equal_parts_get_the_fewest_faces_each_when_they_are_too_many() {
 }
 
 #[test]
-fn blocks_that_touch_part_at_the_edge() {
+fn blocks_that_touch_are_parts_that_touch_again_at_the_edge() {
     let mesh = touching_blocks();
     let result = remesh(&mesh, &settings(200)).unwrap();
     let found = topology(&result.mesh, &Progress::none()).unwrap();
-    assert!(found.closed && found.manifold, "{found:?}");
-    assert_eq!((found.n_components, found.genus), (2, Some(0)));
+    // Four faces meet there.
+    assert!(found.closed && !found.manifold, "{found:?}");
+    assert_eq!((found.n_components, result.report.parts.len()), (1, 2));
+    let rejoined = result.report.rejoined.unwrap();
+    assert_eq!((rejoined.n_shared_lines, rejoined.n_left), (1, 0));
     assert!(result.report.kept.is_empty());
 }
 

@@ -70,9 +70,10 @@ pub(in super::super) fn points(
 impl SharedLine {
     /// Its vertices but for its ends.
     fn inner(&self) -> &[VertexId] {
-        match self.is_closed {
-            true => &self.vertices,
-            false => &self.vertices[1..self.vertices.len() - 1],
+        if self.is_closed {
+            &self.vertices
+        } else {
+            &self.vertices[1..self.vertices.len() - 1]
         }
     }
 }

@@ -71,10 +71,10 @@ impl Leveling {
             for &(line, k) in &ways {
                 let chain = &self.chains[line][k];
                 edges.extend(chain.edges());
-                goals.extend(self.goals(chain, &lines[line]));
+                goals.extend(even_goals(chain, &lines[line]));
             }
             if let Some(copies) = self.copies((sheet, &edges), &goals) {
-                self.put(sheet, &edges, copies);
+                self.put(sheet, &edges, &copies);
                 for (v, goal) in goals {
                     self.places[v.index()] = goal;
                 }
@@ -113,15 +113,6 @@ impl Leveling {
             }
             rough.extend(more);
         }
-    }
-
-    /// Where the vertices of a chain belong on its line.
-    fn goals(&self, chain: &Chain, line: &Line) -> Vec<(VertexId, DVec3)> {
-        let n = chain.vertices.len();
-        let n_steps = if chain.is_closed { n } else { n - 1 };
-        let vertices = chain.vertices.iter().enumerate();
-        let goal = |(i, &v): (usize, &VertexId)| (v, line.at(i as f64 / n_steps as f64));
-        vertices.map(goal).collect()
     }
 
     /// Whether faces beside a chain are folded or flat once it lies on its line and were not before.
@@ -289,7 +280,7 @@ impl Leveling {
     }
 
     /// Puts the rows between ways and their copies.
-    fn put(&mut self, sheet: usize, edges: &BTreeSet<Edge>, copies: Copies) {
+    fn put(&mut self, sheet: usize, edges: &BTreeSet<Edge>, copies: &Copies) {
         for (&(f, i), &copy) in &copies.instead {
             self.faces[sheet][f][i] = copy;
         }
@@ -326,6 +317,15 @@ impl Leveling {
         }
         self.lengthen(sheet, between);
     }
+}
+
+/// Where the vertices of a chain belong on its line.
+fn even_goals(chain: &Chain, line: &Line) -> Vec<(VertexId, DVec3)> {
+    let n = chain.vertices.len();
+    let n_steps = if chain.is_closed { n } else { n - 1 };
+    let vertices = chain.vertices.iter().enumerate();
+    let goal = |(i, &v): (usize, &VertexId)| (v, line.at(i as f64 / n_steps as f64));
+    vertices.map(goal).collect()
 }
 
 /// How many corners of a polygon are flat or turn against a direction.
