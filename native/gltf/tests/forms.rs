@@ -43,7 +43,7 @@ fn strips_fans_and_lists_without_indices_are_read() {
         let indices = file.indices(indices);
         let attributes = json!({"POSITION": points});
         file.glb(one(
-            json!({"mode": mode, "attributes": attributes, "indices": indices}),
+            &json!({"mode": mode, "attributes": attributes, "indices": indices}),
         ))
     };
     assert_eq!(triangles(&with(4, &FACES)), wanted());
