@@ -1,5 +1,7 @@
 //! Scenes and texture coordinates through the program.
 
+#![allow(clippy::unwrap_used)] // What helps tests is a test.
+
 mod support;
 
 use std::fs;
@@ -11,34 +13,33 @@ use support::{BALL_FACES, Folder, ball, run, run_with_input};
 /// A ball with texture coordinates from above, two materials and a library.
 fn painted() -> String {
     let text = ball("");
-    let mut coordinates = String::new();
-    let mut faces = String::new();
-    for line in text.lines().filter(|line| line.starts_with("v ")) {
-        let mut numbers = line
+    let lines = |start: &'static str| text.lines().filter(move |line| line.starts_with(start));
+    let coordinates = lines("v ").map(|line| {
+        let numbers: Vec<f64> = line
             .split(' ')
-            .skip(1)
-            .map(|word| word.parse::<f64>().unwrap());
-        let [x, y] = [numbers.next().unwrap(), numbers.next().unwrap()];
-        coordinates += &format!("vt {} {}\n", 0.5 + 0.3 * x, 0.5 + 0.3 * y);
-    }
-    for (i, line) in text
-        .lines()
-        .filter(|line| line.starts_with("f "))
-        .enumerate()
-    {
-        match i {
-            0 => faces += "usemtl red paint\n",
-            _ if i == BALL_FACES / 2 => faces += "usemtl blue\n",
-            _ => {}
-        }
-        let corners = line.split(' ').skip(1).map(|v| format!(" {v}/{v}"));
-        faces += &format!("f{}\n", corners.collect::<String>());
-    }
-    let vertices: Vec<&str> = text.lines().filter(|line| line.starts_with("v ")).collect();
-    format!(
-        "mtllib my paints.mtl\n{}\n{coordinates}{faces}",
-        vertices.join("\n")
-    )
+            .filter_map(|word| word.parse().ok())
+            .collect();
+        format!("vt {} {}", 0.5 + 0.3 * numbers[0], 0.5 + 0.3 * numbers[1])
+    });
+    let faces = lines("f ").enumerate().map(|(i, line)| {
+        let corners = line.split(' ').skip(1).map(|v| format!("{v}/{v}"));
+        let corners: Vec<String> = corners.collect();
+        let paint = match i {
+            0 => "usemtl red paint\n",
+            _ if i == BALL_FACES / 2 => "usemtl blue\n",
+            _ => "",
+        };
+        format!("{paint}f {}", corners.join(" "))
+    });
+    let library = "mtllib my paints.mtl".to_owned();
+    let vertices = lines("v ").map(str::to_owned);
+    let all: Vec<String> = [library]
+        .into_iter()
+        .chain(vertices)
+        .chain(coordinates)
+        .chain(faces)
+        .collect();
+    all.join("\n") + "\n"
 }
 
 /// How far the texture coordinates of an OBJ file are from those of [`painted`] at most.

@@ -64,6 +64,10 @@ impl Component {
         }
     }
 
+    fn is_index(self) -> bool {
+        matches!(self, Self::U8 | Self::U16 | Self::U32)
+    }
+
     fn number(self, bytes: &[u8]) -> f32 {
         match *bytes {
             [a] if self == Self::I8 => f32::from(a as i8),
@@ -137,64 +141,35 @@ impl<'a> Accessors<'a> {
         let accessor = self.accessor(index, by)?;
         let item = Item::Of("accessor", index);
         let (component, width) = shape(accessor, item)?;
+        check_count(accessor, item, n)?;
         let count = accessor.count;
-        if let Some(expected) = n.filter(|&n| n != count) {
-            let found = count;
-            return Err(ReadError::Count {
-                item,
-                expected,
-                found,
-            });
-        }
-        // Without bytes a count is believed only where that of the positions has been.
-        if accessor.buffer_view.is_none() && n.is_none() {
-            let (expected, found) = ("bytes of a buffer", "none".to_owned());
-            return Err(ReadError::Unexpected {
-                item,
-                expected,
-                found,
-            });
-        }
-        let run = match accessor.buffer_view {
-            Some(view) => {
-                let at = (view, accessor.byte_offset);
-                Some(self.run(item, at, count, (width, component.size()))?)
-            }
-            None => None,
+        let least = if accessor.normalized {
+            -1.0
+        } else {
+            f32::NEG_INFINITY
         };
-        self.spend(count.saturating_mul(width))?;
         let scale = if accessor.normalized {
             component.most()
         } else {
             1.0
         };
-        let number = |bytes: &[u8]| {
-            self.finite(component.number(bytes) / scale)
-                .max(if accessor.normalized {
-                    -1.0
-                } else {
-                    f32::NEG_INFINITY
-                })
-        };
-        let mut values = match &run {
-            Some(run) => run
-                .elements()
-                .flat_map(|element| element.chunks_exact(component.size()).map(number))
-                .collect(),
-            None => vec![0.0; count * width],
+        let number = |bytes: &[u8]| self.finite(component.number(bytes) / scale).max(least);
+        let numbers = |element: &'a [u8]| element.chunks_exact(component.size()).map(number);
+        let mut values: Vec<f32> = if let Some(view) = accessor.buffer_view {
+            let at = (view, accessor.byte_offset);
+            let run = self.run(item, at, count, (width, component.size()))?;
+            self.spend(count.saturating_mul(width))?;
+            run.elements().flat_map(numbers).collect()
+        } else {
+            self.spend(count.saturating_mul(width))?;
+            vec![0.0; count * width]
         };
         if let Some(sparse) = &accessor.sparse {
-            self.place(
-                sparse,
-                (item, count),
-                |i, bytes| {
-                    let numbers = bytes.chunks_exact(component.size()).map(number);
-                    for (value, number) in values[i * width..].iter_mut().zip(numbers) {
-                        *value = number;
-                    }
-                },
-                width * component.size(),
-            )?;
+            for (i, element) in self.sparse(sparse, (item, count), width * component.size())? {
+                for (value, number) in values[i * width..].iter_mut().zip(numbers(element)) {
+                    *value = number;
+                }
+            }
         }
         Ok(Numbers {
             component,
@@ -209,8 +184,7 @@ impl<'a> Accessors<'a> {
         let accessor = self.accessor(index, by)?;
         let item = Item::Of("accessor", index);
         let (component, width) = shape(accessor, item)?;
-        let fits = matches!(component, Component::U8 | Component::U16 | Component::U32);
-        if !fits || width != 1 || accessor.sparse.is_some() {
+        if !component.is_index() || width != 1 || accessor.sparse.is_some() {
             let found = format!("{} of type {}", accessor.kind, accessor.component_type);
             let expected = "whole numbers without sign, one an element,";
             return Err(ReadError::Unexpected {
@@ -219,14 +193,7 @@ impl<'a> Accessors<'a> {
                 found,
             });
         }
-        let Some(view) = accessor.buffer_view else {
-            let (expected, found) = ("bytes of a buffer", "none".to_owned());
-            return Err(ReadError::Unexpected {
-                item,
-                expected,
-                found,
-            });
-        };
+        let view = accessor.buffer_view.ok_or(no_bytes(item))?;
         let at = (view, accessor.byte_offset);
         let run = self.run(item, at, accessor.count, (1, component.size()))?;
         self.spend(accessor.count)?;
@@ -252,22 +219,19 @@ impl<'a> Accessors<'a> {
         })
     }
 
-    /// Gives the bytes of sparse elements to their places.
-    fn place(
+    /// The bytes of sparse elements and their places.
+    fn sparse(
         &self,
         sparse: &Sparse,
         (item, n): (Item, usize),
-        mut put: impl FnMut(usize, &[u8]),
         size: usize,
-    ) -> Result<(), ReadError> {
+    ) -> Result<Vec<(usize, &'a [u8])>, ReadError> {
         let Sparse {
             count,
             indices,
             values,
         } = sparse;
-        let component = Component::of(indices.component_type);
-        let component =
-            component.filter(|c| matches!(c, Component::U8 | Component::U16 | Component::U32));
+        let component = Component::of(indices.component_type).filter(|c| c.is_index());
         let component = component.ok_or_else(|| ReadError::Unexpected {
             item,
             expected: "whole numbers as sparse indices",
@@ -277,8 +241,9 @@ impl<'a> Accessors<'a> {
         let which = self.run(item, at, *count, (1, component.size()))?;
         let at = (values.buffer_view, values.byte_offset);
         let what = self.run(item, at, *count, (1, size))?;
-        for (which, what) in which.elements().zip(what.elements()) {
-            let index = whole(which) as usize;
+        let places = which.elements().map(|bytes| whole(bytes) as usize);
+        let mut found = Vec::with_capacity(*count);
+        for (index, element) in places.zip(what.elements()) {
             if index >= n {
                 return Err(ReadError::NoSuch {
                     by: item,
@@ -287,9 +252,9 @@ impl<'a> Accessors<'a> {
                     n,
                 });
             }
-            put(index, what);
+            found.push((index, element));
         }
-        Ok(())
+        Ok(found)
     }
 
     /// Elements from an offset of a view on, checked to lie in it and in its buffer.
@@ -377,6 +342,29 @@ pub fn view_bytes<'a>(
             of: Item::Of("buffer", found.buffer),
             has: buffer.len(),
         })
+}
+
+/// Whether there are as many elements as there have to be. Without bytes a count is believed only where
+/// that of the positions has been.
+fn check_count(accessor: &Accessor, item: Item, n: Option<usize>) -> Result<(), ReadError> {
+    let found = accessor.count;
+    match n {
+        Some(expected) if expected != found => Err(ReadError::Count {
+            item,
+            expected,
+            found,
+        }),
+        None if accessor.buffer_view.is_none() => Err(no_bytes(item)),
+        _ => Ok(()),
+    }
+}
+
+fn no_bytes(item: Item) -> ReadError {
+    ReadError::Unexpected {
+        item,
+        expected: "bytes of a buffer",
+        found: "none".to_owned(),
+    }
 }
 
 fn shape(accessor: &Accessor, item: Item) -> Result<(Component, usize), ReadError> {

@@ -98,11 +98,11 @@ impl Record {
     }
 
     pub fn bones(&mut self, is_wide: bool, bones: &[u16]) {
-        match is_wide {
-            true => self
-                .0
-                .extend(bones.iter().flat_map(|bone| bone.to_le_bytes())),
-            false => self.0.extend(bones.iter().map(|&bone| bone as u8)),
+        if is_wide {
+            self.0
+                .extend(bones.iter().flat_map(|bone| bone.to_le_bytes()));
+        } else {
+            self.0.extend(bones.iter().map(|&bone| bone as u8));
         }
         self.fill();
     }

@@ -25,7 +25,7 @@ pub struct Carrying<'a> {
 #[derive(Clone, Copy)]
 struct Corner {
     face: usize,
-    corner: usize,
+    index: usize,
     vertex: usize,
 }
 
@@ -56,12 +56,12 @@ impl<'a> Carrying<'a> {
             let mut names = Vec::with_capacity(vertices.len());
             for (i, vertex) in vertices.iter().enumerate() {
                 let vertex = vertex.index();
-                let corner = first as usize + i;
+                let index = first as usize + i;
                 names.push(self.vertex(
                     (group, number),
                     Corner {
                         face,
-                        corner,
+                        index,
                         vertex,
                     },
                     building,
@@ -86,7 +86,7 @@ impl<'a> Carrying<'a> {
         at: Corner,
         building: &mut Building,
     ) -> Result<u32, WriteError> {
-        let set = |set: usize| &self.made.origins.corners[set][at.corner];
+        let set = |set: usize| &self.made.origins.corners[set][at.index];
         let own = self.place(group, at);
         if !own.as_vec3().is_finite() {
             return Err(WriteError::NotFinite { position: own });
@@ -119,7 +119,7 @@ impl<'a> Carrying<'a> {
         Ok(building.vertex(|record| {
             record.floats(own.to_array());
             if group.normals.is_some() {
-                let normal = group.placed.space.normal_back(self.normals[at.corner]);
+                let normal = group.placed.space.normal_back(self.normals[at.index]);
                 record.floats(normal.normalize_or(DVec3::Z).to_array());
             }
             for (name, layer) in &group.layers {
@@ -142,7 +142,7 @@ impl<'a> Carrying<'a> {
 
     /// The place of a corner in its primitive's own space; one that was not touched is as it was.
     fn place(&self, group: &Group, at: Corner) -> DVec3 {
-        let origin = &self.made.origins.corners[0][at.corner];
+        let origin = &self.made.origins.corners[0][at.index];
         if is_untouched(origin) {
             let (from, vertex) = self.scene.at(origin.corners[0] as usize);
             if from.first_vertex == group.first_vertex {

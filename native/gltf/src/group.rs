@@ -78,7 +78,7 @@ pub struct Found {
 /// Names of attributes that are left out are added to `dropped`.
 pub fn read(
     accessors: &Accessors<'_>,
-    placed: Placed,
+    placed: &Placed,
     primitive: usize,
     dropped: &mut BTreeSet<String>,
 ) -> Result<Option<Found>, ReadError> {
@@ -90,7 +90,7 @@ pub fn read(
     };
     let reading = Reading { accessors, item };
     let positions = accessors.numbers(position, item, None)?;
-    reading.check(position, &positions, &[3])?;
+    Reading::check(position, &positions, &[3])?;
     let n = positions.values.len() / 3;
     let indices = match given.indices {
         Some(index) => accessors.indices(index, item, n)?,
@@ -105,14 +105,14 @@ pub fn read(
     let triples = positions.chunks_exact(3).map(|p| [p[0], p[1], p[2]]);
     let positions = triples.collect();
     let group = Group {
-        placed,
+        placed: *placed,
         primitive,
         material: given.material,
         first_vertex: 0,
         positions,
-        normals: reading.normals(given, &rows, &placed)?,
+        normals: reading.normals(given, &rows, placed)?,
         layers: reading.layers(given, &rows, dropped)?,
-        bones: reading.bones(given, &rows, &placed)?,
+        bones: reading.bones(given, &rows, placed)?,
         targets: reading.targets(given, &rows, dropped)?,
     };
     Ok(Some(Found { group, faces }))
@@ -161,12 +161,12 @@ impl Reading<'_> {
         widths: &[usize],
     ) -> Result<Numbers, ReadError> {
         let mut numbers = self.accessors.numbers(index, self.item, Some(rows.n))?;
-        self.check(index, &numbers, widths)?;
+        Self::check(index, &numbers, widths)?;
         numbers.values = rows.of(&numbers.values, numbers.width);
         Ok(numbers)
     }
 
-    fn check(&self, index: usize, numbers: &Numbers, widths: &[usize]) -> Result<(), ReadError> {
+    fn check(index: usize, numbers: &Numbers, widths: &[usize]) -> Result<(), ReadError> {
         if widths.contains(&numbers.width) && numbers.component != Component::U32 {
             return Ok(());
         }
@@ -242,7 +242,7 @@ impl Reading<'_> {
                 break;
             };
             let found = self.values(which, rows, &[4])?;
-            self.check_bones(which, &found, self.accessors.root.skins[skin].joints.len())?;
+            Self::check_bones(which, &found, self.accessors.root.skins[skin].joints.len())?;
             sets.push([found, self.values(shares, rows, &[4])?]);
         }
         let n_sets = sets.len();
@@ -269,7 +269,7 @@ impl Reading<'_> {
         }))
     }
 
-    fn check_bones(&self, index: usize, found: &Numbers, n: usize) -> Result<(), ReadError> {
+    fn check_bones(index: usize, found: &Numbers, n: usize) -> Result<(), ReadError> {
         let item = Item::Of("accessor", index);
         if !matches!(found.component, Component::U8 | Component::U16) || found.normalized {
             return Err(ReadError::Unexpected {

@@ -126,7 +126,7 @@ pub fn groups(
             ));
         }
         for primitive in 0..mesh.primitives.len() {
-            let Some(found) = group::read(&accessors, placed, primitive, &mut dropped)? else {
+            let Some(found) = group::read(&accessors, &placed, primitive, &mut dropped)? else {
                 n_left += 1;
                 continue;
             };

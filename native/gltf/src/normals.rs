@@ -71,9 +71,10 @@ fn beside(mesh: &PolygonMesh) -> Vec<[[usize; 2]; 2]> {
             };
             let ends = [a, b].map(|corner| mesh.corners()[corner]);
             let is_sorted = ends[0] <= ends[1];
-            sides.push(match is_sorted {
-                true => (ends, [a, b]),
-                false => ([ends[1], ends[0]], [b, a]),
+            sides.push(if is_sorted {
+                (ends, [a, b])
+            } else {
+                ([ends[1], ends[0]], [b, a])
             });
         }
     }

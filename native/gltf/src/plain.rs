@@ -58,7 +58,7 @@ pub fn plain(file: &MeshFile, container: Container) -> Result<Vec<u8>, WriteErro
         }
         entries.push(Value::Object(entry));
     }
-    assembled(scene(entries, materials), slots, container)
+    assembled(scene(&entries, &materials), slots, container)
 }
 
 fn layout(file: &MeshFile) -> Layout {
@@ -70,7 +70,7 @@ fn layout(file: &MeshFile) -> Layout {
     layout
 }
 
-fn scene(primitives: Vec<Value>, materials: Vec<Value>) -> Value {
+fn scene(primitives: &[Value], materials: &[Value]) -> Value {
     let mut scene = Map::new();
     scene.insert(
         "asset".into(),
@@ -88,7 +88,7 @@ fn scene(primitives: Vec<Value>, materials: Vec<Value>) -> Value {
         scene.insert("meshes".into(), json!([{"primitives": primitives}]));
     }
     if !materials.is_empty() {
-        scene.insert("materials".into(), Value::Array(materials));
+        scene.insert("materials".into(), json!(materials));
     }
     scene.into()
 }

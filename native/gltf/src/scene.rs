@@ -157,9 +157,10 @@ impl Scene {
             mesh: self.mesh.clone(),
             materials: self.of_faces.iter().map(material).collect(),
             material_names: names,
-            coordinates: match self.groups.iter().any(has_coordinates) {
-                true => coordinates.collect(),
-                false => Vec::new(),
+            coordinates: if self.groups.iter().any(has_coordinates) {
+                coordinates.collect()
+            } else {
+                Vec::new()
             },
             ..MeshFile::default()
         }

@@ -100,9 +100,10 @@ impl Slots {
     fn add_indices(&mut self, primitive: &Building) -> usize {
         let is_small = primitive.n_vertices < usize::from(u16::MAX);
         let indices = primitive.indices.iter();
-        let bytes: Vec<u8> = match is_small {
-            true => indices.flat_map(|&i| (i as u16).to_le_bytes()).collect(),
-            false => indices.flat_map(|i| i.to_le_bytes()).collect(),
+        let bytes: Vec<u8> = if is_small {
+            indices.flat_map(|&i| (i as u16).to_le_bytes()).collect()
+        } else {
+            indices.flat_map(|i| i.to_le_bytes()).collect()
         };
         let view = self.add_view(&bytes);
         self.views[view]["target"] = json!(INDICES);
@@ -138,16 +139,12 @@ impl Slots {
 
 /// Puts a value in the first free place, or at the end.
 fn put(list: &mut Vec<Value>, free: &mut BTreeSet<usize>, value: Value) -> usize {
-    match free.pop_first() {
-        Some(i) => {
-            list[i] = value;
-            i
-        }
-        None => {
-            list.push(value);
-            list.len() - 1
-        }
+    if let Some(i) = free.pop_first() {
+        list[i] = value;
+        return i;
     }
+    list.push(value);
+    list.len() - 1
 }
 
 fn cut(list: &mut Vec<Value>, free: &mut BTreeSet<usize>) {

@@ -1,5 +1,7 @@
 //! The ways in which one and the same mesh can be written down.
 
+#![allow(clippy::unwrap_used)] // What helps tests is a test.
+
 mod support;
 
 use std::fs;
@@ -12,7 +14,7 @@ use support::{File, parts};
 const POINTS: [[f32; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.5]];
 const FACES: [u16; 6] = [0, 1, 2, 0, 2, 3];
 
-fn one(primitive: Value) -> Value {
+fn one(primitive: &Value) -> Value {
     json!({"nodes": [{"mesh": 0}], "meshes": [{"primitives": [primitive]}]})
 }
 
@@ -41,7 +43,7 @@ fn strips_fans_and_lists_without_indices_are_read() {
         let indices = file.indices(indices);
         let attributes = json!({"POSITION": points});
         file.glb(one(
-            json!({"mode": mode, "attributes": attributes, "indices": indices}),
+            &json!({"mode": mode, "attributes": attributes, "indices": indices}),
         ))
     };
     assert_eq!(triangles(&with(4, &FACES)), wanted());
@@ -57,7 +59,7 @@ fn strips_fans_and_lists_without_indices_are_read() {
     );
     let mut file = File::default();
     let points = file.floats(&FACES.map(|i| POINTS[i as usize]));
-    let file = file.glb(one(json!({"attributes": {"POSITION": points}})));
+    let file = file.glb(one(&json!({"attributes": {"POSITION": points}})));
     assert_eq!(triangles(&file), wanted());
 }
 
@@ -74,7 +76,7 @@ fn quantised_interleaved_and_sparse_positions_are_read() {
     file.accessors[points]["normalized"] = json!(true);
     file.views[0]["byteStride"] = json!(8);
     let indices = file.indices(&FACES);
-    let mut text = one(json!({"attributes": {"POSITION": points}, "indices": indices}));
+    let mut text = one(&json!({"attributes": {"POSITION": points}, "indices": indices}));
     text["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
     for (a, b) in triangles(&file.glb(text))
         .iter()
@@ -95,7 +97,7 @@ fn quantised_interleaved_and_sparse_positions_are_read() {
     file.accessors[points]["sparse"] = json!({"count": 1,
         "indices": {"bufferView": which, "componentType": 5121}, "values": {"bufferView": what}});
     let indices = file.indices(&FACES);
-    let text = one(json!({"attributes": {"POSITION": points}, "indices": indices}));
+    let text = one(&json!({"attributes": {"POSITION": points}, "indices": indices}));
     assert_eq!(triangles(&file.glb(text)), wanted());
 }
 

@@ -1,5 +1,7 @@
 //! A scene goes through the core and back: what stays, what is carried, and how well.
 
+#![allow(clippy::unwrap_used)] // What helps tests is a test.
+
 mod support;
 
 use std::collections::BTreeSet;

@@ -144,7 +144,7 @@ pub fn side_of(p: DVec3) -> (usize, [f64; 2]) {
         _ => [q.x, q.y],
     };
     let side = if p[axis] > 0.0 { axis } else { axis + 3 };
-    (side, [u, v].map(|x| (x + 1.0) / 2.0))
+    (side, [u, v].map(share))
 }
 
 /// The texture coordinates of a place of a side: the sides lie beside each other, with gaps.
@@ -154,7 +154,7 @@ pub fn coordinate(side: usize, [s, t]: [f64; 2]) -> [f64; 2] {
 
 /// The share of the second bone.
 pub fn share(z: f64) -> f64 {
-    (z + 1.0) / 2.0
+    z.midpoint(1.0)
 }
 
 /// Three sides of the ball that share no vertex with each other, with all that can lie on them.
