@@ -84,18 +84,19 @@ fn open_all(sheet: &mut Sheet, progress: &Progress) -> Result<usize, Cancelled> 
     Ok(n_moves)
 }
 
-/// How many quads have a corner that does not turn left seen along the quad's own normal.
-pub(super) fn n_inverted(mesh: &PolygonMesh) -> usize {
-    let is_inverted = |face: &&[VertexId]| {
-        let Ok(p) = <[VertexId; 4]>::try_from(*face).map(|face| face.map(|v| mesh.position(v)))
-        else {
-            return false;
-        };
-        let normal = (p[2] - p[0]).cross(p[3] - p[1]);
-        let turn = |i: usize| (p[(i + 1) % 4] - p[i]).cross(p[(i + 3) % 4] - p[i]);
-        !(0..4).all(|i| turn(i).dot(normal) > 0.0)
+/// Whether a face is a quad with a corner that does not turn left seen along the quad's own normal.
+pub fn is_inverted(mesh: &PolygonMesh, face: &[VertexId]) -> bool {
+    let Ok(p) = <[VertexId; 4]>::try_from(face).map(|face| face.map(|v| mesh.position(v))) else {
+        return false;
     };
-    mesh.faces().filter(is_inverted).count()
+    let normal = (p[2] - p[0]).cross(p[3] - p[1]);
+    let turn = |i: usize| (p[(i + 1) % 4] - p[i]).cross(p[(i + 3) % 4] - p[i]);
+    !(0..4).all(|i| turn(i).dot(normal) > 0.0)
+}
+
+/// How many of the quads are inverted.
+pub(super) fn n_inverted(mesh: &PolygonMesh) -> usize {
+    mesh.faces().filter(|face| is_inverted(mesh, face)).count()
 }
 
 /// The faces of less than a quality.

@@ -1,6 +1,6 @@
 //! Lines along which sheets meet: edges are laid there, and the sheets of the result joined.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::fault::Fault;
 use super::frame::{Frame, Prepared, bits};
@@ -9,9 +9,13 @@ use super::report::{Mirrored, PartReport, Rejoined};
 use super::split::{Fate, Parts};
 use super::stay::Met;
 use crate::clean::{Fan, SharedLine, Strand};
-use crate::mesh::{Id, PolygonMesh, VertexId};
+use crate::deform::is_inverted;
+use crate::mesh::{FaceId, Id, PolygonMesh, VertexId};
 use crate::progress::{Cancelled, Progress};
-use crate::rejoin::{self, Corner, Given, Line, Sheet, Touch, rejoin};
+use crate::rejoin::{self, Corner, Given, Line, Rejoined as Joining, Sheet, Touch, rejoin};
+
+/// How often lines beside inverted quads alone are taken out, before all lines of the sheet are.
+const MOST_ROUNDS: usize = 3;
 
 /// The lines along which sheets meet and the points where they touch, at which at least one was
 /// remeshed.
@@ -83,10 +87,15 @@ impl Meetings {
     ///
     /// # Errors
     /// When cancelled.
-    pub fn join(self, mut joined: Joined, progress: &Progress<'_>) -> Result<Joined, Cancelled> {
+    pub fn join(
+        mut self,
+        mut joined: Joined,
+        progress: &Progress<'_>,
+    ) -> Result<Joined, Cancelled> {
         if self.lines.is_empty() && self.touches.is_empty() {
             return Ok(joined);
         }
+        let n_shared_lines = self.lines.len();
         let mut start = 0;
         let sheets = joined.parts.iter().map(|part| {
             start += part.n_faces;
@@ -100,8 +109,7 @@ impl Meetings {
             sheets: &sheets.collect::<Vec<_>>(),
             features: &joined.features,
         };
-        let found = rejoin(&given, (&self.lines, &self.touches), progress)?;
-        let n_shared_lines = self.lines.len();
+        let found = self.sound(&given, progress)?;
         let n_joined = found.joined.iter().flatten().count();
         joined.rejoined = Some(Rejoined {
             n_shared_lines,
@@ -113,8 +121,53 @@ impl Meetings {
         Ok(joined)
     }
 
+    /// The sheets joined along those lines at which that inverts no quad; the others are taken out.
+    fn sound(&mut self, given: &Given<'_>, progress: &Progress<'_>) -> Result<Joining, Cancelled> {
+        let faces = given.sheets.iter().map(|sheet| sheet.faces.len());
+        let before = inverted(given.mesh, &faces.collect::<Vec<_>>());
+        for n_round in 0.. {
+            let found = rejoin(given, (&self.lines, &self.touches), progress)?;
+            let spoiled = self.spoiled(&found, &before, n_round < MOST_ROUNDS);
+            if !spoiled.contains(&true) {
+                return Ok(found);
+            }
+            let mut lines = spoiled.iter();
+            self.lines.retain(|_| lines.next() == Some(&false));
+            let mut lines = spoiled.iter();
+            self.staying[0].retain(|_| lines.next() == Some(&false));
+        }
+        unreachable!("there are fewer lines each time")
+    }
+
+    /// Which lines are at more inverted quads than there were: those beside them, or all of the sheet.
+    fn spoiled(&self, found: &Joining, before: &[Vec<FaceId>], is_near: bool) -> Vec<bool> {
+        let after = inverted(&found.mesh, &found.n_faces);
+        let mut spoiled = vec![false; self.lines.len()];
+        for (sheet, (after, before)) in after.iter().zip(before).enumerate() {
+            if after.len() <= before.len() {
+                continue;
+            }
+            let corners = after.iter().flat_map(|&face| found.mesh.face(face));
+            let corners: HashSet<VertexId> = corners.copied().collect();
+            let is_beside = |joined: &Option<Vec<VertexId>>| {
+                let along = joined.as_ref();
+                along.is_none_or(|along| along.iter().any(|v| corners.contains(v)))
+            };
+            let is_of = |line: &Line| line.strands.iter().any(|strand| strand.sheet == sheet);
+            let lines = self.lines.iter().zip(&found.joined);
+            let beside: Vec<bool> = lines
+                .map(|(line, joined)| is_of(line) && is_beside(joined))
+                .collect();
+            let is_blamed = is_near && beside.contains(&true);
+            for (i, line) in self.lines.iter().enumerate() {
+                spoiled[i] |= if is_blamed { beside[i] } else { is_of(line) };
+            }
+        }
+        spoiled
+    }
+
     /// What of a result lies where faces stay.
-    fn met(&self, found: &rejoin::Rejoined) -> Met {
+    fn met(&self, found: &Joining) -> Met {
         let mut met = Met::default();
         let [lines, touches] = &self.staying;
         for ((line, keys), along) in self.lines.iter().zip(lines).zip(&found.joined) {
@@ -152,15 +205,18 @@ impl Meetings {
 impl Joined {
     /// Takes sheets that were joined; of vertices that are one now the first says where it lies on
     /// its sphere.
-    fn rename(&mut self, found: rejoin::Rejoined) {
+    fn rename(&mut self, found: Joining) {
         let middle = |&[a, b]: &[VertexId; 2]| {
             let [a, b] = [a, b].map(|v| self.sphere[v.index()]);
             if a == b { a } else { (a + b).normalize_or(a) }
         };
         self.sphere = found.from.iter().map(middle).collect();
         let counts = found.n_faces.iter().zip(&found.is_changed);
-        for (part, (&n, &is_changed)) in self.parts.iter_mut().zip(counts) {
+        let inverted = inverted(&found.mesh, &found.n_faces);
+        for ((part, (&n, &is_changed)), inverted) in self.parts.iter_mut().zip(counts).zip(inverted)
+        {
             part.n_faces = n;
+            part.deform.n_inverted = inverted.len();
             if is_changed && part.is_mirrored() {
                 let reason = "it got other faces where sheets meet".to_owned();
                 part.mirrored = Some(Mirrored::Refused { reason });
@@ -169,6 +225,18 @@ impl Joined {
         self.features = found.features;
         self.mesh = found.mesh;
     }
+}
+
+/// The inverted quads of sheets of so many faces, which lie one after the other.
+fn inverted(mesh: &PolygonMesh, n_faces: &[usize]) -> Vec<Vec<FaceId>> {
+    let mut faces = mesh.face_ids();
+    let of_sheet = |&n: &usize| {
+        let of_sheet = faces.by_ref().take(n);
+        of_sheet
+            .filter(|&face| is_inverted(mesh, mesh.face(face)))
+            .collect()
+    };
+    n_faces.iter().map(of_sheet).collect()
 }
 
 impl PartReport {
