@@ -8,6 +8,10 @@ use crate::close::handles::short_loop;
 use crate::mesh::{Id, TriangleMesh, VertexId};
 use crate::progress::Progress;
 
+/// Round handles that a grid makes go loops of this many cells at most: gaps narrower than a cell are
+/// bridged here and there.
+const CELLS_ROUND: f64 = 6.0;
+
 /// What becomes of handles.
 #[derive(Clone, Copy, PartialEq, Debug, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -36,6 +40,19 @@ impl Settings {
     }
 }
 
+impl Settings {
+    /// Up to which length, in percent of the diagonal, handles are sealed: those that were asked for,
+    /// and of what was made solid those no longer than a few cells.
+    pub(super) fn sealed_up_to(&self) -> Option<f64> {
+        let asked = match self.handles {
+            Handles::Keep => None,
+            Handles::SealUpTo(size) => Some(size),
+        };
+        let of_cells = self.solid.then_some(CELLS_ROUND * self.solid_detail);
+        asked.into_iter().chain(of_cells).reduce(f64::max)
+    }
+}
+
 /// The edges of a short loop in each component that has handles.
 pub fn loops(mesh: &TriangleMesh) -> Vec<Vec<[VertexId; 2]>> {
     let components = mesh.named_components(&Progress::none());
@@ -53,6 +70,26 @@ pub fn loops(mesh: &TriangleMesh) -> Vec<Vec<[VertexId; 2]>> {
 mod tests {
     use super::*;
     use crate::shapes;
+
+    #[test]
+    fn what_was_made_solid_has_no_handles_of_a_few_cells() {
+        let solid = Settings {
+            solid: true,
+            solid_detail: 0.5,
+            ..Settings::default()
+        };
+        let sealed = |handles| {
+            Settings {
+                handles,
+                ..solid.clone()
+            }
+            .sealed_up_to()
+        };
+        assert_eq!(Settings::default().sealed_up_to(), None);
+        assert_eq!(sealed(Handles::Keep), Some(3.0));
+        assert_eq!(sealed(Handles::SealUpTo(5.0)), Some(5.0));
+        assert_eq!(sealed(Handles::SealUpTo(1.0)), Some(3.0));
+    }
 
     #[test]
     fn sizes_of_handles_to_seal_go_from_0_to_10_diagonals() {

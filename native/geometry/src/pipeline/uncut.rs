@@ -177,6 +177,7 @@ mod tests {
                         reduced: None,
                         marks: &marks,
                         density: &density,
+                        has_tubes: false,
                     };
                     let whole = Whole::new(mesh.clone(), (&settings, &marks), &quiet).unwrap();
                     let laid = wanted.uncut(&whole, &mut Clock::default(), &quiet).unwrap();

@@ -111,7 +111,7 @@ fn border_irregular_pct(surface: &Surface) -> Option<f64> {
     let valences = surface.edges.valences(mesh.n_vertices());
     let is_irregular = |&v: &usize| {
         let n_right = (angles[v] / FRAC_PI_2).round().max(1.0);
-        f64::from(valences[v]) != n_right + 1.0
+        valences[v] != n_right as u32 + 1
     };
     let border: Vec<usize> = (0..mesh.n_vertices()).filter(|&v| is_border[v]).collect();
     (!border.is_empty()).then(|| 100.0 * share(&border, is_irregular))

@@ -6,7 +6,6 @@ use crate::close::{self, handles};
 use crate::measure::{Topology, topology_of_triangles};
 use crate::mesh::{HalfedgeId, HalfedgeMap, TriangleMesh};
 use crate::pipeline::borders::Opened;
-use crate::pipeline::handles::Handles;
 use crate::pipeline::marks::Marks;
 use crate::pipeline::{Error, Settings};
 use crate::progress::Progress;
@@ -50,7 +49,7 @@ impl Whole {
         let n_part = whole.mesh.n_faces();
         let mut n_first = n_part;
         let mut n_sealed = 0;
-        if let (Handles::SealUpTo(size_pct), true) = (settings.handles, whole.has_handles()) {
+        if let (Some(size_pct), true) = (settings.sealed_up_to(), whole.has_handles()) {
             let sealed = handles::seal(&whole.mesh, size_pct / 100.0, progress)?;
             n_sealed = sealed.n_sealed;
             n_first = sealed.sides.len() / 3;
@@ -101,6 +100,7 @@ mod tests {
     use crate::elementary::sin_cos;
     use crate::mesh::VertexId;
     use crate::pipeline::Borders;
+    use crate::pipeline::Handles;
     use crate::shapes;
 
     fn whole(mesh: &TriangleMesh, settings: &Settings) -> Whole {
