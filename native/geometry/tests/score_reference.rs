@@ -31,6 +31,8 @@ const OF_QUADS: [&str; 7] = [
     "irregular_pct",
     "loop_edges_pct",
 ];
+/// Figures that the tool does not have.
+const OWN: [&str; 1] = ["border_irregular_pct"];
 /// How far exact figures may be apart, as a share: the order of sums differs.
 const ROUNDING: f64 = 1e-9;
 
@@ -77,7 +79,8 @@ fn every_figure_agrees_with_the_recorded_one() {
     for (name, wanted) in &all {
         let wanted = wanted.as_object().expect("an object");
         let found = scored(name, wanted["target"].as_u64().expect("a count") as usize);
-        for (figure, found) in &found {
+        let is_theirs = |figure: &String| !OWN.contains(&figure.as_str());
+        for (figure, found) in found.iter().filter(|(figure, _)| is_theirs(figure)) {
             let is_meant = wanted["quads_pct"] != 0.0 || !OF_QUADS.contains(&figure.as_str());
             let wanted = wanted.get(figure).filter(|_| is_meant);
             let wanted = wanted.unwrap_or(&Value::Null);

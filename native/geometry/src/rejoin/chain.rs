@@ -81,17 +81,17 @@ impl<'a> Sheets<'a> {
         self.edges[sheet].mean
     }
 
-    /// The vertices of a sheet, or of its border, that are near a place, and how far they are; where
-    /// nothing ends there, those from which edges lead inside.
+    /// The vertices of a sheet, or of its border, that are near a place, and how far they are; all, or
+    /// those from which edges lead inside.
     pub(super) fn near(
         &self,
         sheet: usize,
         (place, reach): (DVec3, f64),
-        (is_border, ends_there): (bool, bool),
+        (is_border, leads_inside): (bool, bool),
     ) -> Vec<(VertexId, f64)> {
         let edges = &self.edges[sheet];
         let is_fit = |(v, n): &(&VertexId, &usize)| {
-            (!is_border || edges.along_border.contains_key(v)) && (ends_there || **n > 2)
+            (!is_border || edges.along_border.contains_key(v)) && (!leads_inside || **n > 2)
         };
         let vertices = edges.valences.iter().filter(is_fit).map(|(&v, _)| v);
         let off = |v: VertexId| (v, self.mesh.position(v).distance(place));

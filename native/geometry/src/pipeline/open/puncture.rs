@@ -93,6 +93,9 @@ impl Opening {
         let mut is_kept = vec![true; mesh.n_faces()];
         let around = around(mesh);
         for (i, puncture) in self.punctures.iter().enumerate() {
+            if puncture.line.length() <= 0.0 {
+                return Ok(Err("a border has no length".to_owned()));
+            }
             let places = puncture.rings(mesh, &around);
             let free = places
                 .into_iter()
