@@ -1,5 +1,7 @@
 """Shells that intersect become one closed mesh; parts inside others go."""
 
+from typing import Any
+
 import bpy
 import numpy as np
 import orbflow_native
@@ -13,7 +15,7 @@ def balls(*places: tuple[float, float]) -> Arrays:
     """Balls of some radii at some x."""
     points, _, corners = ball(16, 24)
     n = len(points)
-    all_points = [points * radius + np.float32([x, 0, 0]) for radius, x in places]
+    all_points = [points * radius + np.array([x, 0, 0], np.float32) for radius, x in places]
     all_corners = [corners + i * n for i in range(len(places))]
     corners = np.concatenate(all_corners).astype(np.int32)
     starts = np.arange(0, len(corners), 3, dtype=np.int32)
@@ -22,7 +24,7 @@ def balls(*places: tuple[float, float]) -> Arrays:
 
 def test_settings_reach_the_core() -> None:
     mesh = balls((1, 0), (0.8, 1.0), (0.3, 0.1))
-    wanted = {"faces": 200, "score_samples": 0, "mirror": "off"}
+    wanted: dict[str, Any] = {"faces": 200, "score_samples": 0, "mirror": "off"}
     report = orbflow_native.remesh(*mesh, solid=True, solid_detail=1.5, **wanted).report
     assert report["settings"]["solid"]
     assert report["solid"]["cell_pct"] == pytest.approx(1.5)

@@ -204,14 +204,16 @@ def test_settings_that_change_nothing_are_grey(open_fixture: Open) -> None:
         drawn = panel_of(first).drawn
         return {name for name, row in drawn if not row.active} - {"show_crosses"}
 
-    assert grey() == {"fill_size", "seal_size"}
-    settings.borders, settings.handles = "FILL", "SEAL"
-    assert grey() == set()
+    assert grey() == {"fill_size", "seal_size", "solid_detail"}
+    settings.borders, settings.handles, settings.solid = "FILL", "SEAL", True
+    assert grey() == {"inner"}
+    settings.solid = False
+    assert grey() == {"solid_detail"}
     settings.kind = "TRIANGLES"
-    assert grey() == {"follow_shape", "adaptivity", "density", "mirror"}
+    assert grey() == {"follow_shape", "adaptivity", "density", "mirror", "solid_detail"}
     settings.kind = "QUADS"
     settings.use_weld = settings.use_modifiers = False
-    assert grey() == {"weld", "mirror_modifier"}
+    assert grey() == {"weld", "mirror_modifier", "solid_detail"}
 
 
 def test_every_setting_has_one_place_in_the_panel(open_fixture: Open) -> None:

@@ -83,12 +83,14 @@ pub struct Remeshed {
     positions, loop_start, corner_vert, *, faces=2000, kind="quads", primitive=None,
     follow_shape=0.5, adaptivity=0.5, sharp_angle=40.0, mirror="auto", small_parts="keep",
     small_size=0.0, borders="keep", fill_size=None, handles="keep", seal_size=1.0, solid=false,
-    solid_detail=0.4, inner="keep", weld=1e-5, strict=false, predictor="auto", weights=None, threads=0, seed=0, scale=None, score_samples=10_000, n_crosses=0,
+    solid_detail=0.4, inner="keep", weld=1e-5, strict=false, predictor="auto", weights=None,
+    threads=0, seed=0, scale=None, score_samples=10_000, n_crosses=0,
     material_index=None, marked_edges=None, carried_edges=None, cut_edges=None, density=None,
     reduced=None, progress=None, cancel=None,
 ))]
 #[expect(
     clippy::too_many_arguments,
+    clippy::fn_params_excessive_bools,
     reason = "the keywords of a Python function"
 )]
 pub fn remesh<'py>(
@@ -172,10 +174,7 @@ pub fn remesh<'py>(
         seed,
         threads,
         n_crosses,
-        score: (score_samples > 0).then(|| score::Settings {
-            n_samples: score_samples,
-            ..score::Settings::default()
-        }),
+        score: scored(score_samples),
     };
     let predictor = self::predictor(predictor, weights)?;
     let input = Input {
@@ -193,6 +192,14 @@ pub fn remesh<'py>(
     })?;
     remeshed.report.kept = errors::unscaled(&remeshed.report.kept, scale);
     Remeshed::new(py, &remeshed, scale)
+}
+
+/// How a result is scored: not at all by no samples.
+fn scored(n_samples: usize) -> Option<score::Settings> {
+    (n_samples > 0).then(|| score::Settings {
+        n_samples,
+        ..score::Settings::default()
+    })
 }
 
 /// The sets of edges along which data is cut.
