@@ -27,6 +27,9 @@ pub struct Common<'a> {
     pub predictor: &'a dyn OffsetPredictor,
 }
 
+/// Of more parts each has to be quick.
+const MANY: usize = 32;
+
 /// What became of every part, or why its run failed.
 pub struct Each(Vec<Result<PartResult, String>>);
 
@@ -54,6 +57,7 @@ impl Common<'_> {
             clock,
             progress,
             done: 0,
+            are_many: parts.len() > MANY,
         };
         let mut made = Vec::with_capacity(parts.len());
         let mut images = Vec::new();
@@ -85,6 +89,7 @@ struct Work<'a, 'b> {
     progress: &'a Progress<'b>,
     /// How many triangles are done.
     done: usize,
+    are_many: bool,
 }
 
 impl Work<'_, '_> {
@@ -112,6 +117,7 @@ impl Work<'_, '_> {
                 marks: common.marks,
                 density: common.density,
                 has_tubes: false,
+                is_one_of_many: self.are_many,
             },
         };
         match job.run(self.clock, &progress) {

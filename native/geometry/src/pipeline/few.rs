@@ -17,7 +17,9 @@ use crate::pair::{self, Grid};
 use crate::progress::Progress;
 
 /// Of fewer quads open parts are no flow: most attempts fail there.
-const FEWEST: usize = 24;
+const FEWEST: usize = 7;
+/// The same where there are many parts, and a tenth of a second for each would be long.
+const FEWEST_OF_MANY: usize = 24;
 /// Up to so many quads grids stay grids; of more a flow follows the shape better.
 const MOST_OF_GRID: usize = 64;
 /// A grid has no more triangles for each quad that is wanted: it would lose what they show.
@@ -26,7 +28,12 @@ const TRIANGLES_PER_QUAD: usize = 16;
 impl Wanted<'_> {
     /// Why an open part is not worth a flow; none where it is.
     pub fn too_few(&self) -> Option<String> {
-        (self.n_faces < FEWEST && self.settings.primitive() == Primitive::Flow)
+        let fewest = if self.is_one_of_many {
+            FEWEST_OF_MANY
+        } else {
+            FEWEST
+        };
+        (self.n_faces < fewest && self.settings.primitive() == Primitive::Flow)
             .then(|| format!("{} quads are too few to flow", self.n_faces))
     }
 

@@ -274,6 +274,7 @@ mod tests {
             marks: &marks,
             density: &density,
             has_tubes: false,
+            is_one_of_many: false,
         };
         let quiet = Progress::none();
         let map = embed_mesh(mesh.clone(), wanted.predictor, &quiet).unwrap();

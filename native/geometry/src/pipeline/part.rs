@@ -49,6 +49,8 @@ pub struct Wanted<'a> {
     pub density: &'a Density,
     /// Whether all caps of a part with borders lie at the end of tubes.
     pub has_tubes: bool,
+    /// Whether there are so many parts that each has to be quick.
+    pub is_one_of_many: bool,
 }
 
 /// What has become of a part.

@@ -178,6 +178,7 @@ mod tests {
                         marks: &marks,
                         density: &density,
                         has_tubes: false,
+                        is_one_of_many: false,
                     };
                     let whole = Whole::new(mesh.clone(), (&settings, &marks), &quiet).unwrap();
                     let laid = wanted.uncut(&whole, &mut Clock::default(), &quiet).unwrap();
