@@ -59,7 +59,9 @@ impl Thick {
         let area = total_area(mesh);
         let edge = (area / asked.n_quads.max(1) as f64).sqrt();
         let thickness = 2.0 * volume(mesh) / area;
-        if thickness <= 0.0 || thickness > THIN * edge {
+        // Nor is what has no area, whose thickness is no number.
+        let is_thin = thickness > 0.0 && thickness <= THIN * edge;
+        if !is_thin {
             return Ok(None);
         }
         let apart = 0.5 * (THICK * edge - thickness);
