@@ -9,69 +9,10 @@ import bpy
 import orbflow_native
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
-from . import density, preferences
+from . import choices, density, preferences
 
 # How many crosses of the field a result brings: enough to read the field, a tenth of a megabyte.
 N_CROSSES = 4000
-
-_SIZES = (
-    ("FACES", "Faces", "A number of faces"),
-    ("RATIO", "Ratio", "A share of the faces that the object has, modifiers included"),
-    ("EDGE", "Edge Length", "As many faces as it takes for edges of this length"),
-)
-_KINDS = (
-    ("QUADS", "Quads", "Faces with four corners"),
-    ("TRIANGLES", "Triangles", "Faces with three corners"),
-)
-_PRIMITIVES = (
-    ("AUTO", "Automatic", "Flow for quads, adaptive for triangles"),
-    ("FLOW", "Flow", "Quads whose edges follow the shape"),
-    ("QUAD_SPHERE", "Quad Sphere", "A subdivided box: even rows of quads, 8 irregular vertices"),
-    ("ADAPTIVE", "Adaptive", "Triangles placed where the surface needs them"),
-    ("ICOSPHERE", "Icosphere", "A subdivided icosahedron: 12 irregular vertices"),
-)
-_MARKS = (
-    ("SHARP", "Sharp", "Edges marked as sharp"),
-    ("CREASE", "Crease", "Edges with a subdivision crease"),
-    ("SEAM", "Seam", "Edges marked as seams of the UV map"),
-    ("UV", "UV Islands", "Borders of islands of the active UV map, marked as seams or not"),
-)
-_SMALL_PARTS = (
-    ("KEEP", "Keep", "They stay as they were"),
-    ("DROP", "Leave Out", "The result is without them"),
-)
-_BORDERS = (
-    ("KEEP", "Keep", "Open edges stay open: lines of edges of the result lie on them"),
-    ("FILL", "Fill", "Holes are closed, all of them or the small ones"),
-)
-_HANDLES = (
-    ("KEEP", "Keep", "Handles, as of a cup, stay, and so do holes that go through"),
-    ("SEAL", "Seal", "Small ones, as noise in scans has them, are cut and closed"),
-)
-_INNER = (
-    ("KEEP", "Keep", "They are parts like others"),
-    ("DROP", "Leave Out", "The result is without them"),
-)
-_MIRRORS = (
-    ("OFF", "Off", "The two sides of a mesh need not be alike"),
-    ("AUTO", "Automatic", "Across the first axis, if any, in which every vertex has its image"),
-    ("X", "X", "Across X; a mesh that is not symmetric is made so from the side of positive X"),
-    ("Y", "Y", "Across Y; a mesh that is not symmetric is made so from the side of positive Y"),
-    ("Z", "Z", "Across Z; a mesh that is not symmetric is made so from the side of positive Z"),
-)
-_MIRROR_MODIFIERS = (
-    ("WHOLE", "Whole", "A Mirror modifier goes into the result and leaves the stack"),
-    ("HALF", "Half", "The result is one half, which the Mirror modifier makes whole as before"),
-)
-_PREDICTORS = (
-    ("AUTO", "Auto", "Network for more than some 10,000 faces, where it saves time, else Solver"),
-    (
-        "NETWORK",
-        "Network",
-        "A graph network proposes, the solver mends and grows: faster than Solver and as good",
-    ),
-    ("SOLVER", "Solver", "Finds the map to the sphere by optimisation alone"),
-)
 
 
 def _share(name: str, description: str) -> Any:  # noqa: ANN401 - a property that is made later
@@ -110,7 +51,10 @@ class Settings:
     """The properties themselves; names, defaults and ranges are those of the core."""
 
     size: EnumProperty(
-        name="Size", description="How the number of faces is given", items=_SIZES, default="FACES"
+        name="Size",
+        description="How the number of faces is given",
+        items=choices.SIZES,
+        default="FACES",
     )
     faces: IntProperty(
         name="Faces",
@@ -139,11 +83,11 @@ class Settings:
         subtype="DISTANCE",
         unit="LENGTH",
     )
-    kind: EnumProperty(name="Kind", description="What the faces are", items=_KINDS)
+    kind: EnumProperty(name="Kind", description="What the faces are", items=choices.KINDS)
     primitive: EnumProperty(
         name="Primitive",
         description="The sphere that is deformed into the mesh",
-        items=_PRIMITIVES,
+        items=choices.PRIMITIVES,
     )
     follow_shape: _share(
         "Follow Shape", "Flowing quads: 0 makes smooth loops, 1 lays edges along the curvature"
@@ -165,14 +109,14 @@ class Settings:
     marked_edges: EnumProperty(
         name="Marked Edges",
         description="Which marks of edges get edges of the result along them, however flat",
-        items=_MARKS,
+        items=choices.MARKS,
         options={"ENUM_FLAG"},
         default={"SHARP", "CREASE"},
     )
     mirror: EnumProperty(
         name="Mirror",
         description="Flowing quads: makes one side the exact image of the other",
-        items=_MIRRORS,
+        items=choices.MIRRORS,
         default="AUTO",
     )
     use_modifiers: BoolProperty(
@@ -186,13 +130,13 @@ class Settings:
     mirror_modifier: EnumProperty(
         name="Mirror Modifier",
         description="What becomes of a half that a Mirror modifier makes whole",
-        items=_MIRROR_MODIFIERS,
+        items=choices.MIRROR_MODIFIERS,
         default="WHOLE",
     )
     small_parts: EnumProperty(
         name="Small Parts",
         description="What becomes of parts that are too small for their share of the faces",
-        items=_SMALL_PARTS,
+        items=choices.SMALL_PARTS,
     )
     small_size: FloatProperty(
         name="Small Below",
@@ -208,7 +152,7 @@ class Settings:
     borders: EnumProperty(
         name="Borders",
         description="What becomes of open edges: those around holes, and of sheets as of cloth",
-        items=_BORDERS,
+        items=choices.BORDERS,
     )
     fill_size: FloatProperty(
         name="Fill Up To",
@@ -225,7 +169,7 @@ class Settings:
     handles: EnumProperty(
         name="Handles",
         description="What becomes of handles, as of a cup, and of holes that go through",
-        items=_HANDLES,
+        items=choices.HANDLES,
     )
     seal_size: FloatProperty(
         name="Seal Up To",
@@ -263,7 +207,7 @@ class Settings:
     inner: EnumProperty(
         name="Inner Parts",
         description="What becomes of closed parts that lie wholly inside another",
-        items=_INNER,
+        items=choices.INNER,
     )
     use_weld: BoolProperty(
         name="Weld Seams",
@@ -300,7 +244,7 @@ class Settings:
     predictor: EnumProperty(
         name="Predictor",
         description="Who proposes where each vertex lies on the sphere",
-        items=_PREDICTORS,
+        items=choices.PREDICTORS,
         default="AUTO",
     )
     threads: IntProperty(

@@ -8,7 +8,7 @@ mod collapse;
 mod places;
 
 use super::{Opening, is_same};
-use crate::deform::{Deformed, Target};
+use crate::deform::{Deformed, Target, is_inverted};
 use crate::mesh::{FaceId, Id, PolygonMesh, VertexId};
 use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
@@ -107,7 +107,8 @@ impl Bed<'_> {
     ) -> Result<Option<Deformed>, Cancelled> {
         let mesh = &opened.mesh;
         let corners = collapse::Corners::new(mesh, self.is_corner, progress)?;
-        for face in places::inverted(mesh) {
+        let is_bad = |&face: &FaceId| is_inverted(mesh, mesh.face(face));
+        for face in mesh.face_ids().filter(is_bad) {
             for way in corners.ways(face) {
                 if *n_tries == 0 {
                     return Ok(None);

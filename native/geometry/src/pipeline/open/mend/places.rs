@@ -302,13 +302,6 @@ impl<'a> Places<'a> {
     }
 }
 
-/// The quads that have a corner which does not turn left.
-pub fn inverted(mesh: &PolygonMesh) -> Vec<FaceId> {
-    let at = |v: VertexId| mesh.position(v);
-    let is_inverted = |&face: &FaceId| quality(mesh.face(face), &at, DVec3::ZERO) <= 0.0;
-    mesh.face_ids().filter(is_inverted).collect()
-}
-
 /// The least sine of a quad's corners, seen along its own normal, and where that turns away from
 /// one that is given, along this too; other faces are good.
 fn quality(corners: &[VertexId], at: &impl Fn(VertexId) -> DVec3, outward: DVec3) -> f64 {
