@@ -78,7 +78,8 @@ fn a_refused_mirror_is_told_and_no_reason_to_stop() {
 #[test]
 fn files_of_other_programs_are_named_and_what_to_do_with_them() {
     let folder = Folder::new();
-    let words = "open it in Blender, where the add-on does the same, or convert it to OBJ or PLY";
+    let words =
+        "open it in Blender, where the add-on does the same, or convert it to GLB, OBJ or PLY";
     for (file, text, name) in [
         ("fox.obj", "Kaydara FBX Binary  \0", "FBX"),
         ("fox.dae", "<?xml?><COLLADA>", "Collada"),
