@@ -49,7 +49,7 @@ pictures: $(VENV)/bench.stamp ## Makes every picture of docs/pictures/ anew
 
 bench: $(VENV)/bench.stamp ## Measures the figures of docs/benchmarks.md anew
 	cargo build --release --locked -p orbflow-cli
-	$(BIN)/python tests/benchmarks/measure.py --write docs/benchmarks.md
+	$(BIN)/python tests/benchmarks/measure.py --write
 
 weights: sets ## Repeats the run whose weights are committed, in dist/run
 	target/release/orbflow train dist/train.set --config $(RUN)/config.toml -o dist/run

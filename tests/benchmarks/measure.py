@@ -1,11 +1,16 @@
-"""Measures Orbflow and fills the tables of docs/benchmarks.md.
+"""Measures Orbflow and writes docs/benchmarks.md and docs/lab/per_mesh.md.
 
-    python tests/benchmarks/measure.py [--only PART...] [--write docs/benchmarks.md]
+    python tests/benchmarks/measure.py [--only [PART...]] [--write]
 
 Needs the built program, the folder `shared` beside the checkout (data/dev, data/quaternius,
 data/poses, tools/quality, tools/peers) and the packages of the dependency group `bench`; QuadriFlow
-runs where a Python with the bpy wheel is given. Results are kept in a file part by part, so that
-one part can be measured again alone.
+runs where a Python with the bpy wheel is given. The rows are kept in OUT/results.json part
+by part, so that one part can be measured again alone; what the documents show of them is kept in
+docs/lab/measured.json, so that they keep the parts that were measured elsewhere. `--only` without
+a part measures nothing.
+
+A new part needs a line in `PARTS`, one in `topics.TABLES` and, where it has bars, one in
+`bars.MAKERS`.
 """
 
 import argparse
@@ -19,13 +24,15 @@ from pathlib import Path
 
 import embedding
 import flowing
+import pages
+import record
 import remeshing
 import topology
-from bars import Results
 from bench import Bench, Row
-from tables import tables, write
 
 ROOT = Path(__file__).resolve().parents[2]
+DOCS = ROOT / "docs"
+RECORD = DOCS / "lab" / "measured.json"
 
 
 def machine(bench: Bench) -> list[Row]:
@@ -80,29 +87,31 @@ def options() -> argparse.Namespace:
     parser.add_argument("--shared", type=Path, default=ROOT.parent / "shared")
     parser.add_argument("--out", type=Path, default=ROOT / "target/bench")
     parser.add_argument("--blender", type=Path, default=Path(sys.executable) if has_bpy else None)
-    parser.add_argument("--only", nargs="+", choices=PARTS, default=list(PARTS))
-    parser.add_argument("--write", type=Path, help="Markdown file whose marked parts are replaced")
+    parser.add_argument("--only", nargs="*", choices=PARTS, default=list(PARTS))
+    parser.add_argument("--write", action="store_true", help="write the record and the documents")
     return parser.parse_args()
 
 
 def main() -> None:
-    """Measures the parts asked for and prints every table there is."""
+    """Measures the parts asked for and prints the page of all that was measured."""
     given = options()
     # Peers run in folders of their own, so paths must not depend on the current one.
     blender = given.blender and given.blender.absolute()
     bench = Bench(given.orbflow.resolve(), given.shared.resolve(), given.out.resolve(), blender)
     bench.out.mkdir(parents=True, exist_ok=True)
-    log = bench.out / "results.json"
-    results: Results = json.loads(log.read_text()) if log.exists() else {}
+    kept = bench.out / "results.json"
+    log = json.loads(kept.read_text()) if kept.exists() else {}
+    build = record.build_of(ROOT)
     for part in given.only:
         print(f"{part}:", flush=True)
-        results[part] = PARTS[part](bench)
-        log.write_text(json.dumps(results, indent=1, default=float))
-    made = tables(results)
-    for name, part in made.items():
-        print(f"\n## {name}\n\n{part}")
+        log[part] = {"build": build, "rows": PARTS[part](bench)}
+        kept.write_text(json.dumps(log, indent=1, default=float))
+    found = record.read(RECORD) | record.recorded(log)
+    print(f"\n{pages.benchmarks(found)}")
     if given.write:
-        write(given.write, made)
+        record.write(RECORD, found)
+        (DOCS / "benchmarks.md").write_text(pages.benchmarks(found))
+        (DOCS / "lab" / "per_mesh.md").write_text(pages.per_mesh(found))
 
 
 if __name__ == "__main__":

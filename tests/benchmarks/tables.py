@@ -1,138 +1,50 @@
-"""Writes what was measured as Markdown."""
+"""Makes Markdown tables of what was measured, and shorter ones of these."""
 
-import re
-from collections.abc import Sequence
-from functools import partial
-from pathlib import Path
+import statistics
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
-from bars import Results, bars
+import columns
+from bars import Results
 from bench import Row, median
+from columns import Columns
 
-TRIANGLES = (
-    ("triangles", "triangles", "d"),
-    ("chamfer_pct", "mean distance %", ".4f"),
-    ("isotropic_chamfer_pct", "isotropic's", ".4f"),
-    ("chamfer_ratio", "ratio", ".2f"),
-    ("hausdorff_pct", "Hausdorff %", ".2f"),
-    ("f1_at_0.5_pct", "F1 at 0.5 %", ".2f"),
-    ("edge_cv", "edge CV", ".3f"),
-    ("triangle_angle_mean_min", "mean min angle", ".1f"),
-    ("self_intersecting_pct", "crossing %", ".3f"),
-    ("run_s", "CPU s", ".2f"),
-    ("isotropic_cpu_s", "isotropic's", ".2f"),
-)
-QUADS = (
-    ("faces", "quads", "d"),
-    ("chamfer_pct", "mean distance %", ".4f"),
-    ("instant_meshes_chamfer_pct", "Instant Meshes'", ".4f"),
-    ("quadriflow_chamfer_pct", "QuadriFlow's", ".4f"),
-    ("hausdorff_pct", "Hausdorff %", ".2f"),
-    ("f1_at_1_pct", "F1 at 1 %", ".2f"),
-    ("edge_cv", "edge CV", ".3f"),
-    ("jacobian_mean", "scaled Jacobian", ".3f"),
-    ("self_intersecting_pct", "crossing %", ".3f"),
-    ("alignment_deg", "alignment °", ".1f"),
-    ("irregular_pct", "irregular %", ".2f"),
-    ("loop_edges_pct", "loop edges %", ".0f"),
-    ("spiral_pct", "spiral %", ".0f"),
-)
-FLOW = (
-    ("faces", "quads", "d"),
-    ("chamfer_pct", "mean distance %", ".3f"),
-    ("hausdorff_pct", "Hausdorff %", ".2f"),
-    ("edge_cv", "edge CV", ".3f"),
-    ("jacobian_min", "Jacobian min", ".2f"),
-    ("jacobian_p01", "1 %", ".2f"),
-    ("jacobian_mean", "mean", ".3f"),
-    ("self_intersecting_pct", "crossing %", ".2f"),
-    ("irregular_pct", "irregular %", ".1f"),
-    ("alignment_deg", "alignment °", ".1f"),
-    ("loop_edges_pct", "loop edges %", ".0f"),
-    ("spiral_pct", "spiral %", ".0f"),
-    ("feature_f1_pct", "feature F1 %", ".0f"),
-    ("run_s", "CPU s", ".2f"),
-    ("quadriflow_s", "QuadriFlow's", ".2f"),
-)
-BODIES = (
-    ("faces", "quads", "d"),
-    ("chamfer_pct", "mean distance %", ".3f"),
-    ("posed_chamfer_pct", "posed", ".3f"),
-    ("hausdorff_pct", "Hausdorff %", ".2f"),
-    ("edge_cv", "edge CV", ".3f"),
-    ("jacobian_min", "Jacobian min", ".2f"),
-    ("irregular_pct", "irregular %", ".1f"),
-    ("alignment_deg", "alignment °", ".1f"),
-    ("loop_edges_pct", "loop edges %", ".0f"),
-    ("spiral_pct", "spiral %", ".1f"),
-    ("run_s", "CPU s", ".2f"),
-)
-FEW = (
-    ("n_asked", "asked", "d"),
-    ("flow_share", "flow used", ".0%"),
-    ("upright_share", "no inverted quad", ".0%"),
-    ("count_error_pct", "count error %", ".1f"),
-    ("chamfer_pct", "mean distance %", ".3f"),
-    ("hausdorff_pct", "Hausdorff %", ".1f"),
-    ("jacobian_mean", "scaled Jacobian", ".3f"),
-    ("irregular_pct", "irregular %", ".0f"),
-    ("loop_edges_pct", "loop edges %", ".0f"),
-    ("run_s", "CPU s", ".2f"),
-)
-WHOLE = (
-    ("input_triangles", "input triangles", "d"),
-    ("run_s", "Orbflow, CPU s", ".2f"),
-    ("instant_meshes_s", "Instant Meshes, algorithm alone", ".2f"),
-    ("quadriflow_s", "QuadriFlow, algorithm alone", ".2f"),
-    ("peak_mb", "our peak MB", ".0f"),
-)
-COST = (
-    ("n_vertices", "vertices", "d"),
-    ("cpu_s", "CPU s", ".2f"),
-    ("energy", "energy", ".3f"),
-    ("n_relaxations", "relaxations", "d"),
-    ("peak_mb", "peak MB", ".0f"),
-    ("instant_meshes_s", "Instant Meshes' whole run, CPU s", ".2f"),
-)
-THREADS = (
-    ("embed_1_s", "embedding, 1 thread, s", ".2f"),
-    ("embed_2_s", "2 threads, s", ".2f"),
-    ("ratio", "ratio", ".2f"),
-    ("whole_ratio", "ratio of the whole process", ".2f"),
-)
-LARGE = (
-    ("kind", "kind", "s"),
-    ("faces", "faces", "d"),
-    ("cpu_s", "CPU s", ".1f"),
-    ("wall_s", "wall s", ".1f"),
-    ("peak_mb", "peak MB", ".0f"),
-)
 KIND_PEERS = {"instant_meshes": "Instant Meshes", "quadriflow": "QuadriFlow"}
 KIND_COUNTS = (("inverted", 0), ("is_used", True))
 KIND_BORDERS = ("border_mean_edges", "border_largest_edges", ".2f")
+ARTISTS = (
+    ("loop_edges_pct", "edges on closed loops", "{:.0f} %"),
+    ("alignment_deg", "deviation from principal directions", "{:.1f}°"),
+    ("spiral_pct", "quads in spirals", "{:.1f} %"),
+)
+MEDIAN = "**median**"
 
-Columns = Sequence[tuple[str, str, str]]
+
+def line(cells: Sequence[str]) -> str:
+    """One line of a table."""
+    return f"| {' | '.join(cells)} |"
 
 
-def table(rows: Sequence[Row], columns: Columns, with_median: bool = True) -> str:
+def framed(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """A table with its head."""
+    return "\n".join([line(head), "|" + "---|" * len(head), *map(line, rows)])
+
+
+def table(rows: Sequence[Row], of: Columns, with_median: bool = True) -> str:
     """One line a mesh, failures in words, medians at the end."""
-    head = ["mesh", *(title for _, title, _ in columns)]
-    lines = [_line(head), "|" + "---|" * len(head)]
+    lines = []
     for row in rows:
         if row.get("ok", True):
-            lines.append(_line([row["mesh"], *(_cell(row.get(k), f) for k, _, f in columns)]))
+            lines.append([row["mesh"], *(_cell(row.get(k), f) for k, _, f in of)])
         else:
-            lines.append(_line([row["mesh"], f"failed ({row['code']}): {row['error']}"]))
+            lines.append([row["mesh"], f"failed ({row['code']}): {row['error']}"])
     if with_median:
-        numbers = [
-            _cell(median(rows, key), f.replace("d", ".0f")) if f != "s" else ""
-            for key, _, f in columns
-        ]
-        lines.append(_line(["**median**", *numbers]))
-    return "\n".join(lines)
+        lines.append([MEDIAN, *(_median_cell(rows, key, form) for key, _, form in of)])
+    return framed(["mesh", *(title for _, title, _ in of)], lines)
 
 
-def _line(cells: Sequence[str]) -> str:
-    return f"| {' | '.join(cells)} |"
+def _median_cell(rows: Sequence[Row], key: str, form: str) -> str:
+    return "" if form == "s" else _cell(median(rows, key), form.replace("d", ".0f"))
 
 
 def _cell(value: object, form: str) -> str:
@@ -141,17 +53,27 @@ def _cell(value: object, form: str) -> str:
 
 def few_table(rows: Sequence[Row]) -> str:
     """One line a number of quads: shares of the meshes and medians over them."""
-    lines = [_line([title for _, title, _ in FEW]), "|" + "---|" * len(FEW)]
+    lines = []
     for n_asked in dict.fromkeys(row["n_asked"] for row in rows if row["ok"]):
         group = [row for row in rows if row["ok"] and row["n_asked"] == n_asked]
-        figures: Row = {key: median(group, key) for key, _, _ in FEW[3:]}
+        figures: Row = {key: median(group, key) for key, _, _ in columns.FEW[3:]}
         figures |= {
             "n_asked": n_asked,
             "flow_share": sum(row["is_used"] for row in group) / len(group),
             "upright_share": sum(row["jacobian_min"] > 0 for row in group) / len(group),
         }
-        lines.append(_line([_cell(figures[key], form) for key, _, form in FEW]))
-    return "\n".join(lines)
+        lines.append([_cell(figures[key], form) for key, _, form in columns.FEW])
+    return framed([title for _, title, _ in columns.FEW], lines)
+
+
+def artists_table(rows: Sequence[Row]) -> str:
+    """Medians of our figures and of the artists' own models', where these are of quads."""
+    n = sum(row.get("loop_edges_pct") is not None for row in rows)
+    lines = []
+    for key, words, form in ARTISTS:
+        found = [median(rows, name) for name in (key, f"artists_{key}")]
+        lines.append([words, *(form.format(value) for value in found)])
+    return framed([f"medians of {n} models", "Orbflow", "the artists' own"], lines)
 
 
 def kinds_table(rows: Sequence[Row], peers: Sequence[Row]) -> str:
@@ -159,7 +81,7 @@ def kinds_table(rows: Sequence[Row], peers: Sequence[Row]) -> str:
     of_peers = {row["mesh"]: row for row in peers}
     head = ["kind", "models", "done", "not one inverted quad", "flow in all of it"]
     head += ["loops; spirals %", "border off by, edges: mean; largest", *KIND_PEERS.values()]
-    lines = [_line(head), "|" + "---|" * len(head)]
+    lines = []
     for kind in (*dict.fromkeys(row["kind"] for row in rows), None):
         group = [row for row in rows if kind in (row["kind"], None)]
         done = [row for row in group if row.get("is_alike") and not row["n_kept"]]
@@ -168,57 +90,104 @@ def kinds_table(rows: Sequence[Row], peers: Sequence[Row]) -> str:
         cells += [str(sum(row[key] == value for row in done)) for key, value in KIND_COUNTS]
         for pair in (("loop_edges_pct", "spiral_pct", ".0f"), KIND_BORDERS):
             cells.append("; ".join(_cell(median(done, key), pair[2]) for key in pair[:2]))
-        cells += [str(sum(bool(row.get(f"{p}_is_alike")) for row in theirs)) for p in KIND_PEERS]
-        lines.append(_line(cells))
-    return "\n".join(lines)
+        n_alike = [sum(bool(row.get(f"{p}_is_alike")) for row in theirs) for p in KIND_PEERS]
+        lines.append([*cells, *(str(n) if peers else "–" for n in n_alike)])
+    return framed(head, lines)
 
 
 def steps_table(rows: Sequence[Row]) -> str:
     """Median CPU seconds of every step."""
     done = [row["steps_s"] for row in rows if row.get("ok") and "steps_s" in row]
     names = list(dict.fromkeys(name for steps in done for name in steps))
-    cells = [(name, median(done, name)) for name in names]
-    lines = [_line(["step", "median CPU s"]), "|---|---|"]
-    return "\n".join([*lines, *(_line([name, f"{value:.3f}"]) for name, value in cells)])
+    seconds = [f"{median(done, name):.3f}" for name in names]
+    return framed(["step", *names], [["median CPU s", *seconds]])
 
 
-def summary(results: Results) -> str:
-    """Every bar with what was measured."""
-    lines = [_line(["what", "bar", "measured", "met"]), "|---|---|---|---|"]
-    for bar in bars(results):
-        met = {True: "yes", False: "**no**", None: "–"}[bar.met]
-        lines.append(_line([bar.what, bar.bar, bar.measured, met]))
-    return "\n".join(lines)
+def machine_table(rows: Sequence[Row]) -> str:
+    """The machine in a sentence."""
+    row = rows[0]
+    return (
+        f"{row['n_cores']} cores of {row['cpu']}, {row['memory_gb']} GB of memory, "
+        f"{row['system']}; load {row['load'][0]:.1f} when it was looked at."
+    )
 
 
-def tables(results: Results) -> dict[str, str]:
-    """The Markdown of every part that was measured, by the name of its marker."""
-    made = {"summary": summary(results)}
-    for marker, part, make in (
-        ("cost", "cost", partial(table, columns=COST, with_median=False)),
-        ("threads", "threads", partial(table, columns=THREADS)),
-        ("triangles", "triangles", partial(table, columns=TRIANGLES)),
-        ("quads", "quads", partial(table, columns=QUADS)),
-        ("whole", "quads", partial(table, columns=WHOLE)),
-        ("steps", "quads", steps_table),
-        ("flow", "flow", partial(table, columns=FLOW)),
-        ("flow_steps", "flow", steps_table),
-        ("flow_many", "flow_many", partial(table, columns=FLOW)),
-        ("flow_few", "flow_few", few_table),
-        ("flow_bodies", "flow_bodies", partial(table, columns=BODIES)),
-        ("large", "large", partial(table, columns=LARGE, with_median=False)),
-    ):
-        if rows := results.get(part):
-            made[marker] = make(rows)
-    if rows := results.get("topology"):
-        made["topology"] = kinds_table(rows, results.get("topology_peers", []))
-    return made
+def cells_of(text: str) -> list[list[str]]:
+    """The cells of a table, without the line below its head."""
+    rows = [[cell.strip() for cell in row.strip("|").split("|")] for row in text.splitlines()]
+    return [rows[0], *rows[2:]]
 
 
-def write(path: Path, parts: dict[str, str]) -> None:
-    """Puts each part between its markers `<!-- measured: NAME -->` and `<!-- end -->`."""
-    text = path.read_text()
-    for name, part in parts.items():
-        pattern = re.compile(rf"(<!-- measured: {name} -->\n).*?(<!-- end -->)", re.DOTALL)
-        text = pattern.sub(lambda found, part=part: f"{found[1]}\n{part}\n\n{found[2]}", text)
-    path.write_text(text)
+def spread(text: str) -> str:
+    """Of a table with a line a mesh: the medians, and from where to where each column goes."""
+    head, *rows = cells_of(text)
+    meshes = [row for row in rows if row[0] != MEDIAN and len(row) == len(head)]
+    ranges = [_range([row[i] for row in meshes]) for i in range(1, len(head))]
+    medians = [row for row in rows if row[0] == MEDIAN]
+    return framed([f"{len(meshes)} meshes", *head[1:]], [*medians, ["range", *ranges]])
+
+
+def _range(cells: Sequence[str]) -> str:
+    numbers = sorted((cell for cell in cells if _is_number(cell)), key=float)
+    return f"{numbers[0]} – {numbers[-1]}" if numbers else "–"
+
+
+def _is_number(cell: str) -> bool:
+    return cell.lstrip("-").replace(".", "", 1).isdigit()
+
+
+def by_vertices(text: str) -> str:
+    """Of a table with a line a mesh and size: the medians of each size."""
+    head, *rows = cells_of(text)
+    lines = []
+    for size in dict.fromkeys(row[1] for row in rows):
+        group = [row for row in rows if row[1] == size]
+        found = [_median_of([row[i] for row in group]) for i in range(2, len(head))]
+        lines.append([size, *found])
+    return framed([head[1], *head[2:]], lines)
+
+
+def _median_of(cells: Sequence[str]) -> str:
+    """The middle one as it is written; of an even number the lower of the two."""
+    numbers = sorted((cell for cell in cells if _is_number(cell)), key=float)
+    return str(statistics.median_low(numbers)) if numbers else "–"
+
+
+def as_it_is(text: str) -> str:
+    """A table that is short already."""
+    return text
+
+
+def left_out(_: str) -> str:
+    """Nothing: a table for the lab alone."""
+    return ""
+
+
+def joined(one: str, other: str) -> str:
+    """Two tables with the same columns as one."""
+    return "\n".join([one, *other.splitlines()[2:]])
+
+
+def labelled(text: str, label: str) -> str:
+    """The same with what its lines are of."""
+    head, *rows = cells_of(text)
+    return framed(head, [[f"{label}, {row[0].strip('*')}", *row[1:]] for row in rows])
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table: of which part, under which heading, with which words, and how it is made."""
+
+    part: str
+    name: str
+    topic: str
+    words: str
+    make: Callable[[Results], str]
+    shorten: Callable[[str], str] = spread
+    # What its lines are of, where a table with the same columns stands before it.
+    label: str = ""
+
+
+def by_mesh(part: str, of: Columns, with_median: bool = True) -> Callable[[Results], str]:
+    """Makes one line a mesh of a part's rows."""
+    return lambda results: table(results[part], of, with_median)
