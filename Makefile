@@ -43,7 +43,7 @@ zip: dist/zip.stamp ## Builds this platform's Blender extension, dist/orbflow-*.
 fixtures: .venv-3.11/venv.stamp ## Builds every .blend of blend_fixtures/ anew, so that Blender 4.5 reads them
 	.venv-3.11/bin/python blend_fixtures/make.py
 
-pictures: $(VENV)/bench.stamp ## Makes every picture of docs/pictures/ anew
+pictures: $(VENV)/bench.stamp $(VENV)/wheel.stamp ## Makes every picture of docs/pictures/ anew
 	cargo build --release --locked -p orbflow-cli
 	$(BIN)/python tests/pictures/make.py
 

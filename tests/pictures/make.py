@@ -15,6 +15,7 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
+import field
 from stage import Exhibit, picture
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -108,6 +109,19 @@ def method(studio: Studio) -> list[list[Exhibit]]:
     ]
 
 
+def flow(studio: Studio) -> list[list[Exhibit]]:
+    """The field that quads follow, the quads on the sphere, and those on the surface."""
+    surface, colours = field.drawn(studio.input("spot"), N_QUADS, studio.folder)
+    quads, sphere, _ = studio.remesh("spot", N_QUADS, "--kind", "quads")
+    return [
+        [
+            Exhibit(surface, "the field of crosses", colours, edges=0.0),
+            Exhibit(sphere, "quads that cover the sphere", sphere, is_y_up=False),
+            Exhibit(quads, "irregular vertices", has_marks=True),
+        ]
+    ]
+
+
 def gallery(studio: Studio, names: tuple[str, ...]) -> list[list[Exhibit]]:
     """Models as they came, as quads of ours and as those of two peers."""
     rows = []
@@ -138,6 +152,7 @@ GALLERIES = {
 PICTURES: dict[str, Callable[[Studio], list[list[Exhibit]]]] = {
     "overview": overview,
     "method": method,
+    "flow": flow,
     **{name: partial(gallery, names=names) for name, names in GALLERIES.items()},
 }
 
