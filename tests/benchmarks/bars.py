@@ -125,7 +125,7 @@ def _flow(rows: list[Row]) -> list[Bar]:
     feature_f1 = median(cad, "feature_f1_pct")
     return [
         _sound(rows, what, 2),
-        Bar(what.format("used, not a fallback"), "", _count(rows, "is_used"), None),
+        Bar(what.format("quads flow"), "", _count(rows, "is_used"), None),
         Bar(
             what.format("no inverted quad"),
             "on 90 %",
@@ -153,7 +153,7 @@ def _flow_few(rows: list[Row]) -> list[Bar]:
     upright = [{"ok": row["ok"] and row["jacobian_min"] > 0} for row in rows]
     return [
         _sound(rows, what, 3),
-        Bar(what.format("used, not a fallback"), "", _count(rows, "is_used"), None),
+        Bar(what.format("quads flow"), "", _count(rows, "is_used"), None),
         Bar(what.format("no inverted quad"), "", _count(upright), None),
     ]
 
@@ -181,12 +181,12 @@ def _flow_bodies(rows: list[Row]) -> list[Bar]:
 
 
 def _flow_artists(rows: list[Row]) -> list[Bar]:
-    what = "`quaternius`, as many quads as the artist's model has or would have, {}"
+    what = "`quaternius`, the artist's number of quads, {}"
     upright = [{"ok": row["ok"] and row["n_inverted"] == 0} for row in rows]
     sound, all_sound = _count(rows, "is_sound"), _all(rows, "is_sound")
     return [
         Bar(what.format("closed and all quads"), "every one", sound, all_sound),
-        Bar(what.format("flow used, not a fallback"), "", _count(rows, "is_used"), None),
+        Bar(what.format("quads flow"), "", _count(rows, "is_used"), None),
         Bar(what.format("no inverted quad"), "", _count(upright), None),
     ]
 

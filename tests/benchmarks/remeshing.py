@@ -67,7 +67,7 @@ def quads(bench: Bench) -> list[Row]:
 
 
 def beside_peers(bench: Bench, primitive: str, n_quads: int) -> list[Row]:
-    """So many quads of a primitive on every mesh, the peers in turn with it.
+    """A number of quads of a primitive on every mesh, the peers in turn with it.
 
     Where seconds are compared all run several times in turn, and the least of each counts.
     """
