@@ -8,13 +8,15 @@ WHEEL_FLAGS ?= $(if $(filter Linux,$(shell uname)),--zig --compatibility manylin
 # The meshes that benchmarks, training and evaluation read, and the run whose weights ship.
 DATA ?= ../shared/data
 RUN = native/training/runs/2026-11-26
-# What training runs on besides flex, and is tested: not cuda, whose build fetches a compiler.
+# What tests and lints build, one set for both: training too, on burn's engine flex.
+FEATURES ?= orbflow-cli/train
+# The engines besides flex that are tested: not cuda, whose build fetches a compiler.
 ENGINES = orbflow-cli/ndarray,orbflow-cli/wgpu
 SOURCES := $(shell find Cargo.toml Cargo.lock native/*/Cargo.toml native/*/src native/network/weights.orbflow native/python -type f 2>/dev/null)
 ADDON := $(shell find addon -type f ! -name "*.pyc")
 
 .SECONDARY: # keep the stamps
-.PHONY: help demo test test-rust test-training test-engines test-python wheel zip fixtures pictures bench weights evaluation sets lint format ci clean
+.PHONY: help demo test test-rust test-engines test-python wheel zip fixtures pictures bench weights evaluation sets lint format ci ci-more clean
 
 help: ## Prints this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -22,15 +24,12 @@ help: ## Prints this list
 demo: dist/zip.stamp $(VENV)/venv.stamp ## Remeshes a fixture in the real Blender and leaves the result in demo/
 	$(BIN)/python scripts/demo.py demo
 
-test: test-rust test-engines test-python ## Runs every test
+test: test-rust test-python ## Runs every test, with flex and one Blender
 
-test-rust: ## Runs the tests of the Rust crates, but for training
-	cargo test --workspace --exclude orbflow-training --locked --quiet
+test-rust: ## Runs the tests of the Rust crates
+	cargo test --workspace --features $(FEATURES) --locked --quiet
 
-test-training: ## Runs the tests of training; builds burn, which takes minutes
-	cargo test -p orbflow-training -p orbflow-cli --features orbflow-cli/train --locked --quiet
-
-test-engines: ## The same on every engine; a driver in software stands in for a GPU
+test-engines: ## Runs the tests of training on every engine; a driver in software stands in for a GPU
 	scripts/install_libraries.sh vulkan
 	cargo test -p orbflow-training -p orbflow-cli --features $(ENGINES) --locked --quiet
 
@@ -72,8 +71,8 @@ sets: $(VENV)/venv.stamp
 
 lint: $(VENV)/lint.stamp ## Runs every check that is not a test
 	cargo fmt --all --check
-	cargo clippy --workspace --all-targets --features $(ENGINES) --locked --quiet -- -D warnings
-	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --features $(ENGINES) --locked --quiet
+	cargo clippy --workspace --all-targets --features $(FEATURES) --locked --quiet -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --features $(FEATURES) --locked --quiet
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/typos
@@ -90,10 +89,16 @@ format: $(VENV)/lint.stamp ## Formats all code
 # One build of each crate is all that runs here: nothing is kept for the next one, on disk or in pip's cache.
 ci: export CARGO_INCREMENTAL = 0
 ci: export PIP_NO_CACHE_DIR = 1
-ci: ## Runs what continuous integration runs: lint and test on Python 3.11 and 3.13
+ci: ## Runs what must pass before anything lands: tests and lints
 	$(MAKE) test PYTHON_VERSION=3.13
-	$(MAKE) test-python PYTHON_VERSION=3.11
 	$(MAKE) lint PYTHON_VERSION=3.13
+
+ci-more: export CARGO_INCREMENTAL = 0
+ci-more: export PIP_NO_CACHE_DIR = 1
+ci-more: ## Runs what the workflow runs besides, as before a release: every engine, the oldest Blender
+	$(MAKE) test-engines
+	$(MAKE) lint PYTHON_VERSION=3.13 FEATURES=$(ENGINES)
+	$(MAKE) test-python PYTHON_VERSION=3.11
 
 clean: ## Removes what was built, but not the virtual environments
 	rm -rf dist demo target
