@@ -2,8 +2,10 @@
 //! corner, at counts that allow no cube exactly, and across the plane of symmetry too.
 
 use std::collections::HashSet;
+use std::f64::consts::TAU;
 
 use glam::DVec3;
+use orbflow_geometry::elementary::direction;
 use orbflow_geometry::embed::Solver;
 use orbflow_geometry::mesh::{PolygonMesh, VertexId};
 use orbflow_geometry::pipeline::{Input, Mirror, Settings, remesh};
@@ -169,4 +171,26 @@ fn three_and_six_sides_get_irregular_vertices_inside() {
         [0.5, -half],
     ];
     check(&prism(&hexagon, 0.4), &[54]);
+}
+
+#[test]
+fn a_drum_of_few_quads_does_not_bulge_between_its_rims() {
+    let polygon: Vec<[f64; 2]> = (0..32)
+        .map(|i| direction(f64::from(i) * TAU / 32.0).to_array())
+        .collect();
+    let drum = prism(&polygon, 1.25);
+    let mesh = PolygonMesh::from_faces(drum.positions, &drum.faces).expect("a drum is a mesh");
+    for mirror in [Mirror::Auto, Mirror::Off] {
+        let settings = Settings {
+            faces: 54,
+            mirror,
+            ..Settings::default()
+        };
+        let (solver, quiet) = (Solver::default(), Progress::none());
+        let made = remesh(Input::new(&mesh), &settings, &solver, &quiet).expect("a drum is done");
+        for p in made.mesh.positions() {
+            let radius = p.truncate().length();
+            assert!(radius < 1.0 + NEAR, "{p} {mirror:?}");
+        }
+    }
 }

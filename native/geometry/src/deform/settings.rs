@@ -16,6 +16,9 @@ pub struct Settings {
     pub is_on_lines: bool,
     /// Whether vertices of quads that flow get onto their lines whatever that does to their faces.
     pub forces_lines: bool,
+    /// Whether vertices of quads that flow end on the surface instead of where their faces miss it
+    /// least: with the ends of a drum on its rims, the rings between would stand out beyond them.
+    pub is_inscribed: bool,
     /// How often every vertex of a mesh of triangles slides. Fewer leave uneven faces, more cost
     /// time for little.
     pub n_relaxations: usize,
@@ -59,6 +62,7 @@ impl Default for Settings {
             sizes: Sizes::Equal,
             is_on_lines: false,
             forces_lines: false,
+            is_inscribed: false,
             n_relaxations: 4,
             n_quad_relaxations: 0,
             n_flow_relaxations: 40,

@@ -110,6 +110,7 @@ impl Ground<'_> {
             evenness: self.evenness(),
             is_on_lines: self.keeps_lines(),
             forces_lines: self.asked.opening.is_some(),
+            is_inscribed: self.is_solid(),
             // What is virtual may lie on what is real.
             separates: self.asked.opening.is_none_or(|opening| !opening.overlaps()),
             ..deform::Settings::default()

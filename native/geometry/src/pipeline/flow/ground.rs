@@ -185,7 +185,7 @@ impl Ground<'_> {
     }
 
     /// Whether all sharp edges are followed.
-    fn is_solid(&self) -> bool {
+    pub fn is_solid(&self) -> bool {
         self.style.creases == flow::Creases::All
     }
 }
