@@ -16,7 +16,7 @@ SOURCES := $(shell find Cargo.toml Cargo.lock native/*/Cargo.toml native/*/src n
 ADDON := $(shell find addon -type f ! -name "*.pyc")
 
 .SECONDARY: # keep the stamps
-.PHONY: help demo test test-rust test-engines test-python wheel zip fixtures pictures bench weights evaluation sets lint format ci ci-more clean
+.PHONY: help demo test test-rust test-engines test-python wheel zip fixtures pictures bench weights evaluation sets lint package format ci ci-more clean
 
 help: ## Prints this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -81,6 +81,9 @@ lint: $(VENV)/lint.stamp ## Runs every check that is not a test
 	$(BIN)/check-jsonschema --builtin-schema vendor.github-workflows .github/workflows/*.yml
 	$(BIN)/zizmor --offline --quiet .github/workflows
 
+package: ## Packs the crates as for crates.io, builds them from there and sends nothing
+	cargo publish --dry-run --locked --workspace --exclude orbflow-python
+
 format: $(VENV)/lint.stamp ## Formats all code
 	cargo fmt --all
 	$(BIN)/ruff check --fix --exit-zero .
@@ -95,10 +98,11 @@ ci: ## Runs what must pass before anything lands: tests and lints
 
 ci-more: export CARGO_INCREMENTAL = 0
 ci-more: export PIP_NO_CACHE_DIR = 1
-ci-more: ## Runs what the workflow runs besides, as before a release: every engine, the oldest Blender
+ci-more: ## Runs what the workflow runs besides, as before a release: every engine, the oldest Blender, the crates
 	$(MAKE) test-engines
 	$(MAKE) lint PYTHON_VERSION=3.13 FEATURES=$(ENGINES)
 	$(MAKE) test-python PYTHON_VERSION=3.11
+	$(MAKE) package
 
 clean: ## Removes what was built, but not the virtual environments
 	rm -rf dist demo target
