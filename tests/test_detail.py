@@ -174,19 +174,17 @@ def image_of(material: Any) -> Any:  # noqa: ANN401
 
 def test_a_second_bake_replaces_the_first_in_the_objects_own_materials(open_fixture: Open) -> None:
     thing = bumpy(open_fixture)
-    shared: Any = bpy.data.materials.new("Skin")
-    if shared.node_tree is None:
-        shared.use_nodes = True
+    shared = addon("bake")._new_material("Skin")
     for each in (thing, thing.orbflow_original):
         each.data.materials.append(shared)
     for size in (32, 64):
         press.orbflow_bake_normal_map(image_size=size)
     (image,) = bpy.data.images
     assert (image.name, image.size[0]) == ("Sphere Normal", 64)
-    own, tree = thing.data.materials[0], shared.node_tree
+    own = thing.data.materials[0]
     assert own != shared
     assert image_of(own) == image
-    assert not [each for each in tree.nodes if each.type == "TEX_IMAGE"]
+    assert not [each for each in shared.node_tree.nodes if each.type == "TEX_IMAGE"]
 
 
 def test_without_a_uv_map_there_is_no_normal_map(open_fixture: Open) -> None:
