@@ -8,8 +8,8 @@ is said of a run.
 
 import bpy
 
-from . import originals, overlay, panel, preferences, runs, settings
-from .operators import cancel, detail, normal_map, paint, remesh, show
+from . import earlier, originals, overlay, panel, preferences, runs, settings
+from .operators import before, cancel, detail, normal_map, paint, remesh, show
 
 _CLASSES = (
     preferences.OrbflowPreferences,
@@ -18,6 +18,7 @@ _CLASSES = (
     cancel.OBJECT_OT_orbflow_cancel,
     paint.OBJECT_OT_orbflow_paint_density,
     show.OBJECT_OT_orbflow_show,
+    before.OBJECT_OT_orbflow_before,
     detail.OBJECT_OT_orbflow_bake_detail,
     normal_map.OBJECT_OT_orbflow_bake_normal_map,
     panel.VIEW3D_PT_orbflow,
@@ -33,10 +34,12 @@ def register() -> None:
     originals.register()
     runs.register()
     overlay.register()
+    earlier.register()
 
 
 def unregister() -> None:
     """Called by Blender when the extension is switched off."""
+    earlier.unregister()
     overlay.unregister()
     runs.unregister()
     originals.unregister()

@@ -6,7 +6,7 @@ from typing import Any
 
 import bpy
 
-from . import runs, settings, words
+from . import earlier, runs, settings, words
 from .job import running
 from .runs import Left, Line
 
@@ -69,11 +69,15 @@ class VIEW3D_PT_orbflow(bpy.types.Panel):
                     body.operator("object.orbflow_paint_density", icon="BRUSH_DATA")
         _draw_detail(layout, context)
         column = layout.column(heading="Show")
+        column.prop(context.scene.orbflow, "show_size")
         column.prop(context.scene.orbflow, "show_irregular")
         last = runs.last_of(context.object)
         crosses = column.row()
         crosses.active = last is not None and len(last.crosses) > 0
         crosses.prop(context.scene.orbflow, "show_crosses")
+        row = layout.row()
+        row.active = earlier.may_be(context.object)
+        row.prop(context.window_manager, "orbflow_before", slider=True)
         if last:
             _draw_score(layout.box().column(align=True), last.report, n_letters)
 

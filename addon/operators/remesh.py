@@ -11,6 +11,7 @@ import orbflow_native
 from .. import (
     artist,
     density,
+    earlier,
     events,
     mesh_arrays,
     modifiers,
@@ -258,6 +259,7 @@ def _replace(outcome: Done, keep_original: bool) -> dict[str, Any] | Failed:
     report["has_normals"] = bool(given and given.elements.normals)
     report |= modifiers.told(applied)
     runs.remember(thing, report, outcome.result.crosses)
+    earlier.remember(thing, task.arrays)
     return report
 
 
