@@ -68,6 +68,9 @@ class VIEW3D_PT_orbflow(bpy.types.Panel):
                 if "density" in names:
                     body.operator("object.orbflow_paint_density", icon="BRUSH_DATA")
         _draw_detail(layout, context)
+        row = layout.row()
+        row.active = earlier.may_be(context.object)
+        row.prop(context.window_manager, "orbflow_before", slider=True)
         column = layout.column(heading="Show")
         column.prop(context.scene.orbflow, "show_size")
         column.prop(context.scene.orbflow, "show_irregular")
@@ -75,9 +78,6 @@ class VIEW3D_PT_orbflow(bpy.types.Panel):
         crosses = column.row()
         crosses.active = last is not None and len(last.crosses) > 0
         crosses.prop(context.scene.orbflow, "show_crosses")
-        row = layout.row()
-        row.active = earlier.may_be(context.object)
-        row.prop(context.window_manager, "orbflow_before", slider=True)
         if last:
             _draw_score(layout.box().column(align=True), last.report, n_letters)
 
