@@ -29,7 +29,7 @@ _GAIN = 1.25
 _MOST_QUADS = 8_000_000
 # Farther than this on the whole, in percent of the size, the two are no longer one shape.
 _APART_PCT = 5.0
-_N_SAMPLES = 20_000
+_N_SAMPLES = 10_000
 
 
 class Refused(Exception):
@@ -91,7 +91,11 @@ def bake(
             raise Refused(f"{thing.name} is {told}: are they still one shape?")
         with _placed(context, original) as target:
             wanted = levels or _most_levels(thing.data, original)
-            made = None if live else _sculpted(context, thing, target, wanted, exactly=bool(levels))
+            if live:
+                made = None
+            else:
+                with _at_rest(thing):
+                    made = _sculpted(context, thing, target, wanted, exactly=bool(levels))
             made = made or _wrapped(context, thing, target, wanted)
     return Detail(made.levels, made.n_faces, MULTIRES in thing.modifiers, before, made.distance)
 
@@ -130,8 +134,10 @@ def _sculpted(
     None where Blender makes none; then there is none.
     """
     modifier = thing.modifiers.new(MULTIRES, "MULTIRES")
-    # What moves or copies the surface works on its detail too.
-    thing.modifiers.move(len(thing.modifiers) - 1, 0)
+    # What moves or copies the surface works on its detail too. Blender itself puts it before what
+    # makes faces.
+    if (at := thing.modifiers.find(MULTIRES)) > 0:
+        thing.modifiers.move(at, 0)
     made, last = None, math.inf
     for level in range(1, levels + 1):
         try:
@@ -222,8 +228,21 @@ def _evaluated(context: bpy.types.Context, thing: bpy.types.Object) -> Iterator[
 def _placed(context: bpy.types.Context, mesh: bpy.types.Mesh) -> Iterator[bpy.types.Object]:
     """A mesh as an object of the scene, as long as the block takes."""
     thing = bpy.data.objects.new("Orbflow", mesh)
+    # Keys of the mesh that are not at rest would move it.
+    thing.show_only_shape_key, thing.active_shape_key_index = True, 0
     context.scene.collection.objects.link(thing)
     try:
         yield thing
     finally:
         bpy.data.objects.remove(thing)
+
+
+@contextmanager
+def _at_rest(thing: bpy.types.Object) -> Iterator[None]:
+    """Has an object show its first key alone, as long as the block takes: detail belongs to it."""
+    before = thing.show_only_shape_key, thing.active_shape_key_index
+    thing.show_only_shape_key, thing.active_shape_key_index = True, 0
+    try:
+        yield
+    finally:
+        thing.show_only_shape_key, thing.active_shape_key_index = before

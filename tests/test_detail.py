@@ -118,6 +118,37 @@ def test_detail_goes_below_what_poses_the_result(open_fixture: Open) -> None:
     assert np.abs(heights(seen(thing))).mean() < 0.006
 
 
+def test_detail_is_that_of_the_first_key_and_keys_move_it(open_fixture: Open) -> None:
+    open_fixture("03")
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=48, ring_count=24)
+    thing = bpy.context.object
+    thing.shape_key_add(name="Basis")
+    tall = thing.shape_key_add(name="Tall")
+    for each in tall.data:
+        each.co.z *= 2
+    tall.value = 1
+    press.orbflow_remesh(faces=200, primitive="QUAD_SPHERE", keep_original=True)
+    press.orbflow_bake_detail(levels=2)
+    assert thing.data.shape_keys.key_blocks["Tall"].value == 1
+    assert seen(thing)[:, 2].max() == pytest.approx(2, abs=0.05)
+    thing.data.shape_keys.key_blocks["Tall"].value = 0
+    bpy.context.view_layer.update()
+    lengths = np.linalg.norm(seen(thing), axis=1)
+    assert (lengths.min(), lengths.max()) == pytest.approx((1, 1), abs=0.01)
+
+
+def test_half_of_a_mesh_has_its_detail_before_it_is_made_whole(open_fixture: Open) -> None:
+    open_fixture("05")
+    thing = bpy.context.object
+    thing.modifiers.new("Mirror", "MIRROR").use_axis = (False, False, True)
+    press.orbflow_remesh(faces=200, mirror_modifier="HALF", keep_original=True)
+    assert [each.name for each in thing.modifiers] == ["Mirror"]
+    press.orbflow_bake_detail(levels=1)
+    assert [each.name for each in thing.modifiers] == ["Orbflow Detail", "Mirror"]
+    whole = seen(thing)[:, 2]
+    assert whole.min() == pytest.approx(-whole.max(), abs=1e-5)
+
+
 def test_without_its_original_an_object_is_refused(open_fixture: Open) -> None:
     thing = bumpy(open_fixture)
     original = thing.orbflow_original
