@@ -21,6 +21,7 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -33,6 +34,8 @@ READ = (".obj", ".ply", ".stl", ".off", ".glb", ".gltf")
 _WRITTEN_AS = {".stl": ".obj"}
 # Of the program: this input cannot be done; however often it is tried, nothing else comes of it.
 _CANNOT = 3
+# What a run that was stopped by Ctrl-C ends with.
+_CANCELLED = 130
 # Of what a program says when it fails the end tells why.
 _MOST_TEXT = 2000
 
@@ -115,20 +118,17 @@ def remesh_one(task: Task) -> Outcome:
     if (old := _told_before(task, key)) is not None:
         return old
     os.makedirs(os.path.dirname(task.target) or ".", exist_ok=True)
-    report = f"{task.told}.{os.getpid()}"
     start = time.monotonic()
-    command = [task.program, "remesh", task.source, task.target, "--report", report]
-    ended = subprocess.run(
-        [*command, *task.options], stdin=subprocess.DEVNULL, capture_output=True, text=True
-    )
+    with tempfile.TemporaryDirectory(prefix="orbflow-") as scratch:
+        report = Path(scratch, "report.json")
+        command = [task.program, "remesh", task.source, task.target, "--report", str(report)]
+        ended = subprocess.run(
+            [*command, *task.options], stdin=subprocess.DEVNULL, capture_output=True, text=True
+        )
+        told = json.loads(report.read_text()) if report.exists() else {}
     text, seconds = ended.stderr[-_MOST_TEXT:], round(time.monotonic() - start, 3)
-    try:
-        if ended.returncode not in (0, _CANNOT):
-            raise Failed(f"{task.program} ended with {ended.returncode}: {text.strip()}")
-        told = json.loads(Path(report).read_text()) if os.path.exists(report) else {}
-    finally:
-        if os.path.exists(report):
-            os.remove(report)
+    if ended.returncode not in (0, _CANNOT):
+        raise Failed(f"{task.program} ended with {ended.returncode}: {text.strip()}")
     state = "refused" if ended.returncode == _CANNOT else "done"
     outcome = Outcome(task.source, task.target, state, text, seconds, report=told)
     _tell(task, key, outcome)
@@ -193,7 +193,7 @@ def _client(workers: int | None, scheduler: str | None) -> Iterator[Any]:
     # A process each: one that is lost takes no other with it.
     with (
         dask.LocalCluster(
-            n_workers=n_workers, threads_per_worker=1, processes=True, dashboard_address=None
+            n_workers=n_workers, threads_per_worker=1, processes=True, dashboard_address=":0"
         ) as cluster,
         dask.Client(cluster) as client,
     ):
@@ -279,6 +279,9 @@ def main(given: Sequence[str]) -> int:
     except FolderError as error:
         print(error, file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        print("cancelled; the same command goes on with it", file=sys.stderr)
+        return _CANCELLED
     counts = _counts(outcomes)
     print(json.dumps(counts))
     return 0 if counts["done"] == len(todo) else _CANNOT
