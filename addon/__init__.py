@@ -8,8 +8,8 @@ is said of a run.
 
 import bpy
 
-from . import overlay, panel, preferences, runs, settings
-from .operators import cancel, paint, remesh, show
+from . import earlier, originals, overlay, panel, preferences, runs, settings
+from .operators import before, cancel, detail, normal_map, paint, remesh, show
 
 _CLASSES = (
     preferences.OrbflowPreferences,
@@ -18,6 +18,9 @@ _CLASSES = (
     cancel.OBJECT_OT_orbflow_cancel,
     paint.OBJECT_OT_orbflow_paint_density,
     show.OBJECT_OT_orbflow_show,
+    before.OBJECT_OT_orbflow_before,
+    detail.OBJECT_OT_orbflow_bake_detail,
+    normal_map.OBJECT_OT_orbflow_bake_normal_map,
     panel.VIEW3D_PT_orbflow,
 )
 
@@ -28,14 +31,18 @@ def register() -> None:
         bpy.utils.register_class(each)
     bpy.types.Scene.orbflow = bpy.props.PointerProperty(type=settings.OrbflowSettings)
     bpy.types.VIEW3D_MT_object.append(panel.draw_menu)
+    originals.register()
     runs.register()
     overlay.register()
+    earlier.register()
 
 
 def unregister() -> None:
     """Called by Blender when the extension is switched off."""
+    earlier.unregister()
     overlay.unregister()
     runs.unregister()
+    originals.unregister()
     bpy.types.VIEW3D_MT_object.remove(panel.draw_menu)
     del bpy.types.Scene.orbflow
     for each in reversed(_CLASSES):

@@ -20,7 +20,7 @@ from gpu_extras.batch import batch_for_shader
 from mathutils import Matrix
 from numpy.typing import NDArray
 
-from . import attributes, runs
+from . import attributes, runs, size_preview
 
 Colour = tuple[float, float, float, float]
 
@@ -39,10 +39,10 @@ _WIDTH_PX = 1.5
 # What is drawn, in order, and the share of the way to the eye by which it is drawn nearer. Below
 # that of marks, the surface around a vertex hides half of its mark; ten times as much shows marks
 # through fingers. Crosses lie lower, so that none runs over a mark.
-_NEARER = {"crosses": 0.003, "irregular": 0.004}
+_NEARER = {"size": 0.003, "crosses": 0.003, "irregular": 0.004}
 
 _handles: list[object] = []
-_TICKS = ("show_irregular", "show_crosses")
+_TICKS = ("show_irregular", "show_crosses", "show_size")
 # What was ticked before the last undo, by the name of the scene.
 _ticked: dict[str, list[bool]] = {}
 
@@ -70,11 +70,17 @@ class Kept:
 
     def __init__(self) -> None:
         """Keeps nothing."""
-        self._made: dict[str, tuple[tuple[int, ...], list[Any]]] = {}
+        self._made: dict[str, tuple[tuple[Any, ...], list[Any]]] = {}
 
-    def get(self, what: str, mesh: bpy.types.Mesh, make: Callable[[], list[Any]]) -> list[Any]:
-        """What is kept, or what `make` makes where that is of another mesh."""
-        key = (mesh.as_pointer(), len(mesh.vertices), len(mesh.polygons))
+    def get(
+        self,
+        what: str,
+        mesh: bpy.types.Mesh,
+        make: Callable[[], list[Any]],
+        settings: tuple[Any, ...] = (),
+    ) -> list[Any]:
+        """What is kept, or what `make` makes where that is of another mesh or other settings."""
+        key = (mesh.as_pointer(), len(mesh.vertices), len(mesh.polygons), *settings)
         if what not in self._made or self._made[what][0] != key:
             self._made[what] = (key, make())
         return self._made[what][1]
@@ -167,7 +173,11 @@ def _angles(mesh: bpy.types.Mesh, positions: NDArray[np.float32]) -> NDArray[np.
 
 
 def figures(thing: bpy.types.Object, what: str) -> list[Figure]:
-    """What to draw of an object: its irregular vertices or the crosses of its field."""
+    """What to draw of an object: irregular vertices, crosses of its field, sizes of faces."""
+    if what == "size":
+        found = size_preview.lines(thing, bpy.context.scene.orbflow)
+        colours = size_preview.COLOURS
+        return [Figure("LINES", *each) for each in zip(colours, found, strict=True)]
     if what == "crosses":
         crosses = runs.last_crosses(thing)
         if crosses is None:
@@ -230,7 +240,9 @@ def draw(thing: bpy.types.Object, what: str) -> None:
     def batches() -> list[Any]:
         return [_batch(figure) for figure in figures(thing, what) if len(figure.positions)]
 
-    for batch, shader, colour in _kept.get(what, thing.data, batches):
+    wanted = bpy.context.scene.orbflow
+    settings = tuple(getattr(wanted, name) for name in size_preview.SETTINGS * (what == "size"))
+    for batch, shader, colour in _kept.get(what, thing.data, batches, settings):
         shader.uniform_float("color", colour)
         batch.draw(shader)
 

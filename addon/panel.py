@@ -6,7 +6,7 @@ from typing import Any
 
 import bpy
 
-from . import runs, settings, words
+from . import earlier, runs, settings, words
 from .job import running
 from .runs import Left, Line
 
@@ -67,7 +67,12 @@ class VIEW3D_PT_orbflow(bpy.types.Panel):
                 _draw_settings(body, wanted, names)
                 if "density" in names:
                     body.operator("object.orbflow_paint_density", icon="BRUSH_DATA")
+        _draw_detail(layout, context)
+        row = layout.row()
+        row.active = earlier.may_be(context.object)
+        row.prop(context.window_manager, "orbflow_before", slider=True)
         column = layout.column(heading="Show")
+        column.prop(context.scene.orbflow, "show_size")
         column.prop(context.scene.orbflow, "show_irregular")
         last = runs.last_of(context.object)
         crosses = column.row()
@@ -75,6 +80,19 @@ class VIEW3D_PT_orbflow(bpy.types.Panel):
         crosses.prop(context.scene.orbflow, "show_crosses")
         if last:
             _draw_score(layout.box().column(align=True), last.report, n_letters)
+
+
+def _draw_detail(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """What takes relief from the original, once there is one."""
+    header, body = layout.panel("orbflow_Detail", default_closed=True)
+    header.label(text="Detail")
+    if not body:
+        return
+    thing = context.object
+    if thing and thing.type == "MESH":
+        body.prop(thing, "orbflow_original")
+    body.operator("object.orbflow_bake_detail", icon="MOD_MULTIRES")
+    body.operator("object.orbflow_bake_normal_map", icon="IMAGE_DATA")
 
 
 def draw_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:

@@ -304,6 +304,14 @@ class OrbflowSettings(bpy.types.PropertyGroup, Settings):
         ),
         default=False,
     )
+    show_size: BoolProperty(
+        name="Size of Faces",
+        description=(
+            "Lay patches of faces on the active mesh, as large as they will be: by the number that "
+            "is asked for and by Density, from blue (large) to red (small), not by Adaptivity"
+        ),
+        default=False,
+    )
     show_crosses: BoolProperty(
         name="Field Crosses",
         description=(

@@ -250,7 +250,7 @@ def _without_marks(report: dict[str, Any]) -> str:
         return ""
     gone = 100 - report["carried"]["length_pct"] if report["carried"] else 0
     marks = "marks of edges"
-    if "custom normals" in report["lost"]:
+    if report["has_normals"]:
         marks += " and breaks of custom normals"
     # Chords are shorter than what they stand for.
     return f"{gone:.0f} % of the {marks} are gone: no edge lies there" if gone > 5 else ""

@@ -47,7 +47,7 @@ def build(wheel: Path, out: Path) -> Path:
         "LICENSE": (ROOT / "LICENSE-GPL").read_bytes(),
         f"wheels/{wheel.name}": wheel.read_bytes(),
     }
-    for source in sorted(ADDON.rglob("*.py")):
+    for source in sorted([*ADDON.rglob("*.py"), *ADDON.rglob("*.js")]):
         members[source.relative_to(ADDON).as_posix()] = source.read_bytes()
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
         for name in sorted(members):

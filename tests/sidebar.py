@@ -51,6 +51,7 @@ def panel_of(thing: bpy.types.Object, width: int = 292) -> Layout:
     preferences = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))
     context: Any = SimpleNamespace(
         scene=bpy.context.scene,
+        window_manager=bpy.context.window_manager,
         object=thing,
         evaluated_depsgraph_get=bpy.context.evaluated_depsgraph_get,
         region=SimpleNamespace(width=width),

@@ -62,9 +62,8 @@ def write(
 
 
 def _lost(mesh: bpy.types.Mesh) -> list[str]:
-    lost = ["custom normals"] if mesh.has_custom_normals else []
-    if n_loose := edges.n_loose(mesh):
-        lost.append(f"{n_loose:,} loose edge{'s' * (n_loose > 1)}")
+    n_loose = edges.n_loose(mesh)
+    lost = [f"{n_loose:,} loose edge{'s' * (n_loose > 1)}"] if n_loose else []
     return lost + [f"attribute {each.name}" for each in mesh.attributes if layers.is_lost(each)]
 
 

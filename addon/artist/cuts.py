@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import attributes
+from . import normals
 from .layers import Layer
 
 Int = NDArray[np.int32]
@@ -143,6 +144,8 @@ def _least_jump(layer: Layer) -> float:
     """By how much values on two sides of a cut differ at least."""
     if layer.kind == "FLOAT2":
         return _APART
+    if layer.name == normals.NAME:
+        return _CREASE
     if layer.values.dtype != np.float32:
         return 0.0
     known = layer.values[np.isfinite(layer.values)]

@@ -51,10 +51,7 @@ def n_loose(mesh: bpy.types.Mesh) -> int:
 
 
 def _with_creases(mesh: bpy.types.Mesh, found: list[Layer]) -> list[Layer]:
-    """The layers of edges, with those sharp at which the artist's normals break.
-
-    The normals themselves do not come over.
-    """
+    """The layers of edges, with those sharp at which the artist's normals break."""
     sharp = cuts.creases(mesh)[:, None]
     if not sharp.any():
         return found

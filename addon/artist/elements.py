@@ -9,7 +9,7 @@ import orbflow_native
 from numpy.typing import NDArray
 
 from .. import attributes
-from . import cuts, layers
+from . import cuts, layers, normals
 from .layers import Layer, Mix
 
 Int = NDArray[np.int32]
@@ -30,13 +30,17 @@ class Elements:
     cut_by: list[int]
     #: Which UV maps and colors are active.
     active: dict[str, str]
+    #: The artist's normals of corners; they are cut by the last of `cut_by`.
+    normals: Layer | None = None
 
 
 def read(mesh: bpy.types.Mesh) -> Elements:
     """Reads the attributes of a mesh."""
     found = {domain: list(layers.read(mesh, domain)) for domain in _DOMAINS}
     corners = attributes.corner_verts(mesh)
-    return Elements(found, corners, *cuts.of_layers(mesh, found["CORNER"]), _active(mesh))
+    turned = normals.read(mesh)
+    of_corners = found["CORNER"] + ([turned] if turned else [])
+    return Elements(found, corners, *cuts.of_layers(mesh, of_corners), _active(mesh), turned)
 
 
 def write(mesh: bpy.types.Mesh, given: Elements, result: orbflow_native.Remeshed) -> Mix | None:
@@ -51,12 +55,14 @@ def write(mesh: bpy.types.Mesh, given: Elements, result: orbflow_native.Remeshed
     ]
     for layer in given.layers["POINT"]:
         layer.mixed(of_vertices).write(mesh, "POINT")
-    for layer, number in zip(given.layers["CORNER"], given.cut_by, strict=True):
+    for layer, number in zip(given.layers["CORNER"], given.cut_by, strict=False):
         layer.mixed(of_corners[number]).write(mesh, "CORNER")
     for layer in given.layers["FACE"]:
         layer.taken(origins.faces).write(mesh, "FACE")
     for place, name in given.active.items():
         _activate(mesh, place, name)
+    if given.normals:
+        normals.write(mesh, given.normals, of_corners[given.cut_by[-1]])
     return of_vertices
 
 

@@ -11,6 +11,7 @@ import orbflow_native
 from .. import (
     artist,
     density,
+    earlier,
     events,
     mesh_arrays,
     modifiers,
@@ -255,8 +256,10 @@ def _replace(outcome: Done, keep_original: bool) -> dict[str, Any] | Failed:
         bpy.data.meshes.remove(old)
         thing.data.name = name
     report = outcome.result.report | {"lost": given.lost if given else []}
+    report["has_normals"] = bool(given and given.elements.normals)
     report |= modifiers.told(applied)
     runs.remember(thing, report, outcome.result.crosses)
+    earlier.remember(thing, task.arrays)
     return report
 
 
