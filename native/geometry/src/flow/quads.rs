@@ -296,6 +296,7 @@ mod tests {
             lines: marked,
             marked,
             firm: None,
+            turned: None,
             mirror: None,
         }
     }

@@ -42,6 +42,13 @@ impl Marked {
         self.0.is_empty()
     }
 
+    /// They and more of them.
+    #[must_use]
+    pub fn and(mut self, more: Option<Self>) -> Self {
+        self.0.extend(more.into_iter().flat_map(|more| more.0));
+        self
+    }
+
     /// They, each from end to end.
     pub fn segments(&self) -> impl Iterator<Item = [DVec3; 2]> {
         self.0.iter().copied()

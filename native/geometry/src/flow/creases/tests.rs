@@ -79,6 +79,7 @@ fn quads_of(mesh: TriangleMesh) -> Flow {
         lines: &marked,
         marked: &marked,
         firm: None,
+        turned: None,
         mirror: None,
     };
     flow(&map, guides, &flow::Settings::new(400), &Progress::none()).unwrap()

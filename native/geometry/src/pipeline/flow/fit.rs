@@ -86,7 +86,12 @@ impl Ground<'_> {
     fn find(&self, settings: &flow::Settings, progress: &Progress<'_>) -> Result<Laid, Error> {
         let surface = &self.surface;
         let part = progress.part("", 0.0, 0.95);
-        let mut flow = flow::flow(&surface.even, surface.guides(), settings, &part)?;
+        let mut flow = flow::flow(
+            &surface.even,
+            surface.guides(self.is_strict),
+            settings,
+            &part,
+        )?;
         if settings.may_exceed {
             flow = flow.thinned(self.asked.n_quads)?;
         }
@@ -109,7 +114,7 @@ impl Ground<'_> {
         let settings = deform::Settings {
             evenness: self.evenness(),
             is_on_lines: self.keeps_lines(),
-            forces_lines: self.asked.opening.is_some(),
+            forces_lines: self.has_firm(),
             // What is virtual may lie on what is real.
             separates: self.asked.opening.is_none_or(|opening| !opening.overlaps()),
             ..deform::Settings::default()
