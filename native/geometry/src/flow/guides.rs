@@ -12,6 +12,9 @@ pub struct Guides<'a> {
     pub marked: &'a HalfedgeMap<bool>,
     /// Those of them that have to be met, such as borders: closed lines, or ones that end in others.
     pub firm: Option<&'a FirmEdges>,
+    /// Those of the lines that somebody drew where the surface has no edge: chords may lie on both
+    /// sides of them.
+    pub drawn: Option<&'a HalfedgeMap<bool>>,
     /// Edges that are no lines, and the field turns along.
     pub turned: Option<&'a HalfedgeMap<bool>>,
     /// That the surface is its own image in a plane, and the quads shall be.

@@ -1,6 +1,6 @@
 //! Guidance: lines that somebody draws on a surface for edges to follow.
 //!
-//! A [`Stroke`] lies near a surface, not on it. [`draw`] splits the triangles of a mesh where strokes
+//! A [`Stroke`] lies near a surface, not on it. [`draw()`] splits the triangles of a mesh where strokes
 //! cross them, so that each becomes a chain of the mesh's own edges; vertices that are nearly on a
 //! stroke are moved onto it instead, so that no thin triangles are left. What the quads make of such
 //! edges is up to the flow: those of an *exact* stroke are lines that have to be met, those of one to

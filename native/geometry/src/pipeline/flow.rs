@@ -10,7 +10,7 @@ use super::even::{For, Marked, even};
 use super::flowed::{FlowedPart, better};
 use super::open::Opening;
 use super::paired::told;
-use super::strokes::OnPart;
+use super::strokes::{Finer, OnPart};
 use super::{Error, Settings, mirror};
 use crate::deform::Target;
 use crate::flow;
@@ -82,6 +82,19 @@ pub fn along(
     let split = if ground.is_strict { 0.6 } else { 1.0 };
     let part = progress.part("", 0.15, split);
     let mut found = found((&mut ground, symmetry), budget, clock, &part)?;
+    if std::env::var("ORB_DEBUG").is_ok() {
+        match &found {
+            Ok(f) => eprintln!(
+                "strict {} lost {} failed {} missed {} {:?}",
+                ground.is_strict,
+                f.lost,
+                f.n_failed(),
+                f.n_missed,
+                f.deformed.report
+            ),
+            Err(e) => eprintln!("strict {} err {e}", ground.is_strict),
+        }
+    }
     if ground.is_strict && found.as_ref().map_or(true, |found| !found.is_sound()) {
         // Lines that need not be met leave more ways out.
         ground.is_strict = false;
@@ -130,6 +143,8 @@ fn ground<'a>(
         style.creases = flow::Creases::All;
     }
     let borders = asked.opening.map_or(&[][..], |opening| &opening.lines);
+    let edge = (total_area(target.mesh()) / asked.n_quads.max(1) as f64).sqrt();
+    let finer = Finer::new(asked.strokes, edge);
     let quads = For {
         n_quads: asked.n_quads,
         sizes: &style.sizes,
@@ -137,12 +152,12 @@ fn ground<'a>(
         lines: if lines.is_empty() { borders } else { lines },
         is_solid: !lines.is_empty(),
         opening: asked.opening,
+        finer: &finer,
     };
     let even = match told(even(map, (target, &wanted), &quads, progress))? {
         Ok(even) => even,
         Err(reason) => return Ok(Err(reason)),
     };
-    let edge = (total_area(target.mesh()) / asked.n_quads.max(1) as f64).sqrt();
     let sphere = even.sphere.clone();
     let surface = Surface::new(even, (asked.opening, target));
     let surface = surface.drawn((asked, target, edge), progress)?;
@@ -151,6 +166,7 @@ fn ground<'a>(
     Ok(Ok(Ground {
         wanted: wanted.and(exact),
         is_strict: surface.strokes.is_some(),
+        finer,
         sphere,
         surface,
         target,

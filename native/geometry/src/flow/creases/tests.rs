@@ -80,6 +80,7 @@ fn quads_of(mesh: TriangleMesh) -> Flow {
         marked: &marked,
         firm: None,
         turned: None,
+        drawn: None,
         mirror: None,
     };
     flow(&map, guides, &flow::Settings::new(400), &Progress::none()).unwrap()

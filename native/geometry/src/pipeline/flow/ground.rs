@@ -11,6 +11,7 @@ use crate::pipeline::flow::Asked;
 use crate::pipeline::flowed::{FlowedPart, better};
 use crate::pipeline::open::Opening;
 use crate::pipeline::rods;
+use crate::pipeline::strokes::Finer;
 use crate::progress::{Cancelled, Progress};
 use crate::sphere;
 use crate::sphere_map::SphereMap;
@@ -29,6 +30,8 @@ pub struct Ground<'a> {
     pub style: flow::Settings,
     /// Whether strokes have to be met, or are as marked edges are.
     pub is_strict: bool,
+    /// Where strokes want smaller quads.
+    pub finer: Finer,
 }
 
 /// An even surface, with those of its edges that quads heed.
@@ -111,6 +114,7 @@ impl Surface {
                 .map(|strokes| &strokes.edges)
                 .or(self.border.as_ref()),
             turned: self.turned.as_ref(),
+            drawn: self.strokes.as_ref().map(|strokes| &strokes.exact),
             mirror: self.doubled.as_ref(),
         }
     }
@@ -137,6 +141,23 @@ impl Ground<'_> {
             from = to;
             budget.is_over |= matches!(found, Err(Refusal { is_over: true, .. }));
             let found = found.map_err(|refusal| refusal.reason);
+            if std::env::var("ORB_DEBUG").is_ok() {
+                match &found {
+                    Ok(f) => eprintln!(
+                        "  {attempt:?} lost {} failed {} missed {} inv {} cross {} {:?}",
+                        f.lost,
+                        f.n_failed(),
+                        f.n_missed,
+                        f.deformed.report.n_inverted,
+                        f.deformed.report.n_crossing_left,
+                        match &f.flowed {
+                            super::super::flowed::Flowed::Used { flow, .. } => flow.n_creases,
+                            _ => [0, 0],
+                        }
+                    ),
+                    Err(e) => eprintln!("  {attempt:?} err {e}"),
+                }
+            }
             best = better(best, found.and_then(FlowedPart::not_cut_off));
             let is_usual = attempt == Attempt::Usual;
             let is_failing = best.as_ref().map_or(true, |best| best.n_failed() > 0);

@@ -5,6 +5,7 @@
 //! (`pipeline/flow/drawn.rs`). In the end the result is held against them ([`told`]).
 
 mod chain;
+mod finer;
 mod sides;
 mod told;
 
@@ -19,6 +20,7 @@ use crate::measure::total_area;
 use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
 
+pub use finer::Finer;
 pub use told::{GuideOutcome, GuideReport};
 
 /// A stroke with a point farther from the surface than this share of the diagonal is not drawn.
@@ -107,6 +109,7 @@ impl Strokes {
 
 impl OnPart<'_> {
     /// None.
+    #[cfg(test)]
     pub fn none() -> Self {
         Self(None)
     }
@@ -173,3 +176,6 @@ impl Input<'_> {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests;
