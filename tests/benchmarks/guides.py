@@ -1,11 +1,11 @@
 """Draws rings round eyes, mouths, wrists and necks, and measures how edges lie to them.
 
-    python tests/benchmarks/guides.py PROGRAM [--half tuning|report] [--faces N] [--strength exact|follow]
+    python tests/benchmarks/guides.py PROGRAM [--half tuning|report] [--strength exact|follow]
 
-The rings are where a sphere round a landmark cuts the surface, as uneven as the triangles they cross.
-For each it prints how far the closed chain of edges along it is from it, in mean edges of the result,
-at most and in the mean, and by how many degrees edges turn from it in the mean. Half of the rings
-is for choosing settings, the other for figures.
+The rings are where a sphere round a landmark cuts the surface, as uneven as the triangles that they
+cross. For each it prints how far the closed chain of edges along it is from it, in mean edges of the
+result, at most and in the mean, and by how many degrees edges turn from it in the mean. Half of the
+rings is for choosing settings, the other for figures.
 """
 
 import argparse
@@ -212,7 +212,8 @@ def main() -> None:
             continue
         points, faces = read(DATA / name)
         places = landmarks(name, points)
-        rings = {part: ring(points, triangles(faces), places[part], "wrist" not in part) for part in parts}
+        corners = triangles(faces)
+        rings = {p: ring(points, corners, places[p], "wrist" not in p) for p in parts}
         stem = f"{name.replace('/', '_')[:-4]}_{asked.strength}"
         lines, out = asked.out / f"{stem}_rings.obj", asked.out / f"{stem}.obj"
         write_rings(lines, rings, asked.strength)

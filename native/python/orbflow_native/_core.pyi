@@ -78,7 +78,7 @@ class Guide:
     ) -> Guide: ...
     @property
     def points(self) -> NDArray[np.float64]:
-        """`(N, 3) float64`"""
+        """`(N, 3) float64`."""
 
     @property
     def is_closed(self) -> bool:

@@ -8,9 +8,9 @@ use crate::guidance::Strength;
 use crate::measure::Polyline;
 
 /// A ring is to have so many edges: of fewer than eight hardly any is met.
-const EDGES_ROUND: f64 = 16.0;
+const EDGES_ROUND: f64 = 20.0;
 /// Edges are to be shorter by this factor at most.
-const FINEST: f64 = 2.0;
+const FINEST: f64 = 2.5;
 /// Points of a ring are so far apart, in edges of a quad.
 const STEP: f64 = 0.5;
 
