@@ -8,6 +8,7 @@ use orbflow_geometry::pipeline::{Kind, Mirror, Primitive, Settings, Style};
 use orbflow_geometry::score;
 
 use crate::formats::{FileFormat, READ, WRITTEN};
+use crate::guides::Guides;
 use crate::parsers::{degrees, format, kind, mirror, n_faces, primitive, share};
 use crate::parts::OfParts;
 use crate::place::Place;
@@ -124,6 +125,8 @@ pub struct Wanted {
     /// quads are half as long as where they are 0
     #[arg(long, value_name = "FILE")]
     pub density: Option<PathBuf>,
+    #[command(flatten)]
+    pub drawn: Guides,
     /// Make quads that are their own image across an axis, in the plane through the origin or the
     /// middle of the mesh; auto: across the first in which every vertex is another's image
     #[arg(long, default_value = "auto", value_parser = mirror())]

@@ -1,6 +1,7 @@
 //! Each command: read, run the core's verb, write.
 
 use orbflow_geometry::embed::OffsetPredictor;
+use orbflow_geometry::guidance::Stroke;
 use orbflow_geometry::pipeline::{self, Input, Remeshed, Settings};
 use orbflow_geometry::progress::{CancelToken, Cancelled};
 use orbflow_geometry::{clean, score};
@@ -98,6 +99,8 @@ struct Rebuilding<'a> {
     carried: Carried,
     /// How much denser quads are wanted at every vertex, where a file says it.
     density: Option<Vec<f64>>,
+    /// Lines that edges are to follow.
+    guides: Vec<Stroke>,
     outputs: Outputs,
 }
 
@@ -116,6 +119,7 @@ impl<'a> Rebuilding<'a> {
         let given = read(&input.input, input.input_format)?;
         let carried = given.carried(format(output, *output_format), wanted.parts.weld.0);
         let density = wanted.density.as_deref().map(numbers).transpose()?;
+        let guides = wanted.drawn.read()?;
         let token = interrupt.start_work();
         let places = [Some(output), files.report.as_ref(), files.sphere.as_ref()];
         let outputs = Outputs::new(places.into_iter().flatten())?;
@@ -125,6 +129,7 @@ impl<'a> Rebuilding<'a> {
             given,
             carried,
             density,
+            guides,
             outputs,
         })
     }
@@ -140,6 +145,7 @@ impl<'a> Rebuilding<'a> {
             materials: self.given.materials(),
             density: self.density.as_deref(),
             cuts: self.carried.cuts(),
+            guides: &self.guides,
             ..Input::new(&self.given.file.mesh)
         };
         let remeshed = with_bar(self.token, |progress| {

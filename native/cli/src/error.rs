@@ -56,6 +56,20 @@ pub enum Error {
         line: usize,
         word: String,
     },
+    /// The file of guides cannot be read.
+    #[error("cannot read {}: {cause}", path.display())]
+    OpenGuides { path: PathBuf, cause: io::Error },
+    /// A word in it is no point, or no number of one.
+    #[error("{}, line {line}: '{word}' names no point; there are {n_points}", path.display())]
+    NotAGuide {
+        path: PathBuf,
+        line: usize,
+        word: String,
+        n_points: usize,
+    },
+    /// There is no line in it.
+    #[error("{}: there is no line in it; guides are OBJ files with v and l elements", path.display())]
+    NoGuides { path: PathBuf },
     /// The file holds no weights that this program can use.
     #[error("{}: {cause}", path.display())]
     Weights {

@@ -15,6 +15,7 @@ mod evaluate;
 mod foreign;
 mod formats;
 mod given;
+mod guides;
 mod inputs;
 mod interrupt;
 mod outputs;

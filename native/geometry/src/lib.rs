@@ -46,6 +46,7 @@ pub mod elementary;
 pub mod embed;
 pub mod flow;
 pub mod groups;
+pub mod guidance;
 pub mod hierarchy;
 pub mod measure;
 pub mod mesh;

@@ -9,7 +9,14 @@ use std::path::{Path, PathBuf};
 const FLOORS: [&[&str]; 5] = [
     &["elementary", "progress"],
     &["groups", "mesh", "random", "sparse"],
-    &["hierarchy", "measure", "mirror", "nearest", "sphere_map"],
+    &[
+        "guidance",
+        "hierarchy",
+        "measure",
+        "mirror",
+        "nearest",
+        "sphere_map",
+    ],
     &[
         "clean", "close", "decimate", "deform", "embed", "flow", "pair", "rejoin", "score",
         "solid", "sphere", "transfer",

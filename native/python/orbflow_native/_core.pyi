@@ -19,6 +19,7 @@ __all__ = [
     "Cancelled",
     "Decimated",
     "Embedded",
+    "Guide",
     "InputError",
     "OrbflowError",
     "Origins",
@@ -62,6 +63,30 @@ class CancelToken:
     @property
     def is_cancelled(self) -> bool:
         """Whether the flag is up."""
+
+@final
+class Guide:
+    """A line near the surface that edges of flowing quads follow.
+
+    With `is_exact` a line of edges lies on it, else edges turn along it. A closed one goes on from
+    its last point to its first. `points` is an `(N, 3) float64` array in the mesh's coordinates, of
+    2 points or more, closed of 3.
+    """
+
+    def __new__(
+        cls, points: NDArray[np.float64], *, is_closed: bool = False, is_exact: bool = False
+    ) -> Guide: ...
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """`(N, 3) float64`."""
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether the last point is joined to the first."""
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether a line of edges is to lie on it."""
 
 @final
 class Origins:
@@ -223,6 +248,7 @@ def remesh(
     cut_edges: Sequence[_Ints] | None = None,
     density: _Floats | None = None,
     reduced: tuple[_Floats, _Ints] | None = None,
+    guides: Sequence[Guide] | None = None,
     progress: _Listener | None = None,
     cancel: CancelToken | None = None,
 ) -> Remeshed:

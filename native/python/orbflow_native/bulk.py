@@ -79,6 +79,7 @@ def remesh(
     cut_edges: Sequence[_Ints] | None = None,
     density: _Floats | None = None,
     reduced: tuple[_Floats, _Ints] | None = None,
+    guides: Sequence[_core.Guide] | None = None,
     progress: Callable[[str, float], Any] | None = None,
     cancel: _core.CancelToken | None = None,
 ) -> _core.Remeshed:
@@ -120,6 +121,8 @@ def remesh(
     result is in the space of the input. `reduced` is the same mesh with fewer triangles, as
     points (V, 3) and triangles (T, 3); without it, fast-simplification makes it for large
     meshes where installed.
+    `guides` are lines near the surface, each a `Guide`, that edges of flowing quads follow; what
+    became of each is in the report's `guides`, and a lost exact one is among its `warnings`.
     `score_samples` is how many points of each surface the score looks at; 0 makes no score.
     `progress` is called on the calling thread, at most 20 times a second, with the name of the
     step and the share of the work that is done. The same input and settings give the same bytes.
@@ -163,6 +166,7 @@ def remesh(
         cut_edges=cut_edges,
         density=density,
         reduced=reduced,
+        guides=guides,
         progress=progress,
         cancel=cancel,
     )

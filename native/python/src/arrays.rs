@@ -68,6 +68,12 @@ pub fn densities(array: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     Ok(values.into_iter().map(f64::from).collect())
 }
 
+/// The points of a `(N, 3) float64` array.
+pub fn places(array: &Bound<'_, PyAny>, name: &str, shape: &str) -> PyResult<Vec<DVec3>> {
+    let flat = rows::<f64, 3>(array, name, shape)?;
+    Ok(flat.chunks_exact(3).map(DVec3::from_slice).collect())
+}
+
 /// The points of a `(N, 3) float32` array, multiplied by `scale`.
 fn points(array: &Bound<'_, PyAny>, name: &str, scale: DVec3) -> PyResult<Vec<DVec3>> {
     let flat = rows::<f32, 3>(array, name, "(V, 3)")?;

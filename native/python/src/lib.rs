@@ -8,6 +8,7 @@ mod arrays;
 mod decimate;
 mod embed;
 mod errors;
+mod guide;
 mod job;
 mod origins;
 mod predictor;
@@ -27,6 +28,8 @@ mod _core {
     use crate::embed::{Embedded, embed};
     #[pymodule_export]
     use crate::errors::{Cancelled, InputError, OrbflowError};
+    #[pymodule_export]
+    use crate::guide::Guide;
     #[pymodule_export]
     use crate::job::CancelToken;
     #[pymodule_export]

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use numpy::{PyArray1, PyArray2, PyArray3};
+use orbflow_geometry::guidance::Stroke;
 use orbflow_geometry::mesh::VertexId;
 use orbflow_geometry::pipeline::{self, Borders, Handles, Input, Settings, Style};
 use orbflow_geometry::score;
@@ -10,6 +11,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{self, MeshArrays};
 use crate::errors;
+use crate::guide::Guide;
 use crate::job::{CancelToken, Job};
 use crate::origins::Origins;
 use crate::predictor::predictor;
@@ -73,6 +75,8 @@ pub struct Remeshed {
 /// `predictor` is "auto", "network" or "solver": auto takes the network for maps of 20,000 vertices or
 /// more, else the solver. The network has the wheel's weights, or `weights`: the bytes of a file that
 /// `orbflow train` wrote, or its path. `n_crosses` is how many crosses of the field to tell at most.
+/// `guides` are lines near the surface that edges of flowing quads follow; what became of each is in
+/// the report's `guides`, and a lost exact one is among its `warnings`.
 /// `score_samples` is how many points of each surface the score looks at; 0 makes no score.
 /// `progress` is called on the calling thread, at most 20 times a second, with the name of the step
 /// and the share of the work that is done. The same input and settings give the same bytes.
@@ -86,7 +90,7 @@ pub struct Remeshed {
     solid_detail=0.4, inner="keep", weld=1e-5, strict=false, predictor="auto", weights=None,
     threads=0, seed=0, scale=None, score_samples=10_000, n_crosses=0,
     material_index=None, marked_edges=None, carried_edges=None, cut_edges=None, density=None,
-    reduced=None, progress=None, cancel=None,
+    reduced=None, guides=None, progress=None, cancel=None,
 ))]
 #[expect(
     clippy::too_many_arguments,
@@ -129,6 +133,7 @@ pub fn remesh<'py>(
     cut_edges: Option<Vec<Bound<'py, PyAny>>>,
     density: Option<&Bound<'py, PyAny>>,
     reduced: Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
+    guides: Option<Vec<PyRef<'py, Guide>>>,
     progress: Option<Bound<'py, PyAny>>,
     cancel: Option<&CancelToken>,
 ) -> PyResult<Remeshed> {
@@ -150,6 +155,8 @@ pub fn remesh<'py>(
     let reduced = reduced
         .map(|(points, triangles)| arrays::triangles(&points, &triangles, scale))
         .transpose()?;
+    let guides = guides.unwrap_or_default();
+    let guides: Vec<Stroke> = guides.iter().map(|guide| guide.stroke(scale)).collect();
     let settings = Settings {
         faces,
         kind: report::choice("kind", kind)?,
@@ -185,6 +192,7 @@ pub fn remesh<'py>(
         density: density.as_deref(),
         carried: carried.as_deref().unwrap_or_default(),
         cuts: cuts.as_deref(),
+        guides: &guides,
     };
     let job = Job::new(progress, cancel).scaled(scale);
     let mut remeshed = job.run(py, |progress| {

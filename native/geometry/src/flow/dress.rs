@@ -104,7 +104,10 @@ impl<'a> Edges<'a> {
         let is_firm = |h| guides.firm.is_some_and(|firm| firm.is_on[h]);
         let is_sharp = |h| all[h] && !guides.marked[h] && !is_firm(h);
         Self {
-            along: with_plane(guides, &all),
+            along: match guides.turned {
+                Some(turned) => either(&with_plane(guides, &all), turned),
+                None => with_plane(guides, &all),
+            },
             sharp: mesh.halfedge_ids().map(is_sharp).collect(),
             held: firm(guides, (creases, &all)).map(|firm| with_plane(guides, firm)),
             all,
@@ -142,7 +145,8 @@ impl<'a> Edges<'a> {
         (mesh, field): (&TriangleMesh, &OrientationField),
         h: f64,
     ) -> Vec<&HalfedgeMap<bool>> {
-        let lines = creases::lines(mesh, field, self.known(&self.along), h).into_iter();
+        let along = with_plane(self.guides, &self.all);
+        let lines = creases::lines(mesh, field, self.known(&along), h).into_iter();
         let sharp = lines.map(|line| line.length_of(mesh, |h| self.sharp[*h]));
         let are_clear = creases::are_clear(mesh, &self.sharp, sharp.sum());
         let all = are_clear.then_some(&self.all);

@@ -12,6 +12,11 @@ pub struct Guides<'a> {
     pub marked: &'a HalfedgeMap<bool>,
     /// Those of them that have to be met, such as borders: closed lines, or ones that end in others.
     pub firm: Option<&'a FirmEdges>,
+    /// Those of the lines that somebody drew where the surface has no edge: chords may lie on both
+    /// sides of them.
+    pub drawn: Option<&'a HalfedgeMap<bool>>,
+    /// Edges that are no lines, and the field turns along.
+    pub turned: Option<&'a HalfedgeMap<bool>>,
     /// That the surface is its own image in a plane, and the quads shall be.
     pub mirror: Option<&'a Doubled>,
 }
@@ -27,6 +32,8 @@ pub struct FirmEdges {
     pub twins: Vec<[Vec<HalfedgeId>; 2]>,
     /// What of the surface counts, where they part it from what does not.
     pub real: Option<Real>,
+    /// Whether lines of them may end anywhere, as strokes do.
+    pub may_end: bool,
 }
 
 /// What of a surface counts when quads are counted.

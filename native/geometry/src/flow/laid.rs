@@ -42,7 +42,7 @@ pub(super) fn lay(
     let mut placed = place(map, quads, &grid.cells, &[], &part)?;
     let laid = (&grid.quads[..], &placed.positions[..]);
     let lines: Vec<&Line> = plan.lines().collect();
-    let seams = creases::seams(map.mesh(), &lines, &whole.complex, laid);
+    let seams = creases::seams((map.mesh(), guides.drawn), &lines, &whole.complex, laid);
     let images = match guides.mirror {
         Some(_) => Some(images(quads, &seams[..plan.plane.len()]).ok_or(Error::Uneven)?),
         None => None,

@@ -161,7 +161,8 @@ fn search(
         from = to;
     }
     let laid = lay_plan(last, &progress.part("", from, 1.0))?;
-    match unmet(last, &laid) {
+    // Of what was drawn as much is met as can be.
+    match unmet(last, &laid) - unmet_drawn(last, &laid, guides) {
         0 => Ok(laid),
         n_unmet => Err(Error::Creases {
             n_met: laid.is_met.len() - n_unmet,
@@ -176,6 +177,16 @@ fn unmet(plan: &Plan, laid: &Laid) -> usize {
     lines
         .filter(|(line, is_met)| line.is_firm && !**is_met)
         .count()
+}
+
+/// How many of them somebody drew.
+fn unmet_drawn(plan: &Plan, laid: &Laid, guides: Guides<'_>) -> usize {
+    let Some(drawn) = guides.drawn else {
+        return 0;
+    };
+    let lines = plan.lines().zip(&laid.is_met);
+    let of_drawn = lines.filter(|(line, _)| line.is_firm && drawn[line.halfedges[0]]);
+    of_drawn.filter(|(_, is_met)| !**is_met).count()
 }
 
 /// The grid of whole periods, with the ends of lines among its vertices.
@@ -296,6 +307,8 @@ mod tests {
             lines: marked,
             marked,
             firm: None,
+            turned: None,
+            drawn: None,
             mirror: None,
         }
     }

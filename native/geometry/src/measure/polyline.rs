@@ -63,6 +63,25 @@ impl Polyline {
         (i, share)
     }
 
+    /// The same moved outward where it bends, by half of what chords of some length would cut off:
+    /// so chords between its points are on both sides of it. Ends stay.
+    #[must_use]
+    pub fn balanced(&self, chord: f64) -> Self {
+        let whole = self.length();
+        let moved = |(&p, &at): (&DVec3, &f64)| {
+            let room = if self.is_closed {
+                whole / 4.0
+            } else {
+                at.min(whole - at)
+            };
+            let half = room.min(chord / 2.0);
+            let middle = (self.point(at - half) + self.point(at + half)) / 2.0;
+            p + (p - middle) * 0.5
+        };
+        let points = self.points.iter().zip(&self.lengths).map(moved);
+        Self::new(points.collect(), self.is_closed)
+    }
+
     /// How far a position is from it.
     pub fn distance(&self, position: DVec3) -> f64 {
         let from = |[a, b]: [DVec3; 2]| {
@@ -98,11 +117,35 @@ pub struct Seam {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::elementary::sin_cos;
 
     fn square(is_closed: bool) -> Polyline {
         let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.0]];
         let points = corners.map(|[x, y]| DVec3::new(x, y, 0.0)).to_vec();
         Polyline::new(points, is_closed)
+    }
+
+    #[test]
+    fn chords_of_a_balanced_line_are_on_both_sides_of_it() {
+        let circle = |radius: f64, n: u32| {
+            let point = |i: u32| {
+                let (sin, cos) = sin_cos(std::f64::consts::TAU * f64::from(i) / f64::from(n));
+                DVec3::new(radius * cos, radius * sin, 0.0)
+            };
+            Polyline::new((0..=n).map(point).collect(), true)
+        };
+        let line = circle(1.0, 240).balanced(circle(1.0, 8).length() / 8.0);
+        let [corner, next] = [0.0, line.length() / 8.0].map(|at| line.point(at));
+        let [out, within] = [
+            corner.length() - 1.0,
+            1.0 - ((corner + next) / 2.0).length(),
+        ];
+        assert!(
+            out > 0.03 && within > 0.03 && (out - within).abs() < 0.01,
+            "{out} {within}"
+        );
+        let open = square(false).balanced(0.5);
+        assert_eq!([open.point(0.0), open.point(9.0)], [DVec3::ZERO; 2]);
     }
 
     #[test]

@@ -10,6 +10,7 @@ use super::mirror::{self, Plane, Role};
 use super::part::{PartJob, PartResult, Wanted};
 use super::report::Mirrored;
 use super::split::{Parts, components, share};
+use super::strokes::Strokes;
 use super::{Error, Settings, share_of_work};
 use crate::embed::OffsetPredictor;
 use crate::mesh::{PolygonMesh, TriangleMesh};
@@ -25,6 +26,8 @@ pub struct Common<'a> {
     pub settings: &'a Settings,
     pub plane: Option<Plane>,
     pub predictor: &'a dyn OffsetPredictor,
+    /// What the artist drew.
+    pub strokes: &'a Strokes,
 }
 
 /// Of more parts each has to be quick.
@@ -61,12 +64,12 @@ impl Common<'_> {
         };
         let mut made = Vec::with_capacity(parts.len());
         let mut images = Vec::new();
-        for ((part, n_faces), role) in parts.into_iter().zip(shares).zip(&roles) {
+        for (at, ((part, n_faces), role)) in parts.into_iter().zip(shares).zip(&roles).enumerate() {
             if let &Role::ImageOf(of) = role {
                 images.push((made.len(), of, part, n_faces));
                 made.push(Err(String::new()));
             } else {
-                made.push(work.run(part, n_faces, role)?);
+                made.push(work.run((at, part), n_faces, role)?);
             }
         }
         for (at, of, part, n_faces) in images {
@@ -74,7 +77,7 @@ impl Common<'_> {
                 Ok(mirror::image_of(of_made, of, plane.axis))
             } else {
                 let alone = "the part whose image it is could not be done".to_owned();
-                work.run(part, n_faces, &Role::Alone(Some(alone)))?
+                work.run((at, part), n_faces, &Role::Alone(Some(alone)))?
             };
         }
         Ok(Each(made))
@@ -95,7 +98,7 @@ struct Work<'a, 'b> {
 impl Work<'_, '_> {
     fn run(
         &mut self,
-        part: TriangleMesh,
+        (at, part): (usize, TriangleMesh),
         n_faces: usize,
         role: &Role,
     ) -> Result<Result<PartResult, String>, Error> {
@@ -116,6 +119,7 @@ impl Work<'_, '_> {
                 reduced: self.reduced,
                 marks: common.marks,
                 density: common.density,
+                strokes: common.strokes.on_part(at),
                 has_tubes: false,
                 is_one_of_many: self.are_many,
             },

@@ -1,5 +1,6 @@
 //! Why a run ends without a mesh.
 
+use glam::DVec3;
 use thiserror::Error;
 
 use super::kept::{Kept, refusal};
@@ -46,6 +47,40 @@ pub enum Error {
         vertex: VertexId,
         /// How many vertices there are.
         n_vertices: usize,
+    },
+    /// A stroke has too few points.
+    #[error("guide {guide} has {n_points} points; it needs {n_least} at least")]
+    GuideTooShort {
+        /// Which stroke.
+        guide: usize,
+        /// How many points it has.
+        n_points: usize,
+        /// How many it needs.
+        n_least: usize,
+    },
+    /// A point of a stroke is no place.
+    #[error("point {point} of guide {guide} is ({}, {}, {}), which is not finite", at.x, at.y, at.z)]
+    GuideNotFinite {
+        /// Which stroke.
+        guide: usize,
+        /// Which of its points.
+        point: usize,
+        /// Where it is.
+        at: DVec3,
+    },
+    /// All points of a stroke are in one place.
+    #[error("the {n_points} points of guide {guide} are all in one place")]
+    GuideWithoutLength {
+        /// Which stroke.
+        guide: usize,
+        /// How many points it has.
+        n_points: usize,
+    },
+    /// Only quads that flow follow strokes.
+    #[error("guides are for quads that flow, but the {} primitive was asked for", primitive.name())]
+    GuidesNeedFlow {
+        /// What was asked for.
+        primitive: Primitive,
     },
     /// Not one density per vertex.
     #[error("{n_values} densities for {n_vertices} vertices")]

@@ -6,6 +6,7 @@
 use glam::DVec3;
 
 use super::open::Opening;
+use super::strokes::Finer;
 use crate::deform::{self, Held, Sizes, Target};
 use crate::elementary::powf;
 use crate::measure::{FeatureLine, feature_lines, loose_share, sharp_edges};
@@ -40,6 +41,13 @@ impl Marked {
 
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
+    }
+
+    /// They and more of them.
+    #[must_use]
+    pub fn and(mut self, more: Option<Self>) -> Self {
+        self.0.extend(more.into_iter().flat_map(|more| more.0));
+        self
     }
 
     /// They, each from end to end.
@@ -134,6 +142,8 @@ pub struct For<'a> {
     pub is_solid: bool,
     /// What is real of a part that was closed.
     pub opening: Option<&'a Opening>,
+    /// Where strokes want them smaller.
+    pub finer: &'a Finer,
 }
 
 /// A solid has few edges: of more lines, as of the facets of a model, no grid keeps to all.
@@ -179,6 +189,12 @@ pub fn even(
     if let Some(opening) = quads.opening {
         for (wanted, &is_in_cap) in density.as_mut_slice().iter_mut().zip(&opening.is_in_cap) {
             *wanted *= if is_in_cap { IN_CAPS } else { 1.0 };
+        }
+    }
+    if !quads.finer.is_empty() {
+        for (v, wanted) in map.mesh().vertex_ids().zip(density.as_mut_slice()) {
+            let factor = quads.finer.at(map.mesh().position(v));
+            *wanted *= factor * factor;
         }
     }
     let is_finer = density.iter().any(|&wanted| wanted > 1.0);

@@ -66,6 +66,13 @@ pub enum Fault {
         /// Of how many.
         n_shared_lines: usize,
     },
+    /// A stroke that was to be met and is not, or was not drawn.
+    Guide {
+        /// Which one.
+        guide: usize,
+        /// What came of it.
+        reason: String,
+    },
     /// A network's proposal was no use, and the solver's map was taken.
     Network {
         /// For how many parts.
@@ -123,6 +130,7 @@ impl Fault {
             } => format!(
                 "sheets no longer meet vertex by vertex along {n_left} of {n_shared_lines} lines where they did"
             ),
+            Self::Guide { guide, reason } => format!("guide {guide} is lost: {reason}"),
             Self::Network { n_parts } => {
                 let (parts, _) = of(*n_parts, "part", "", "");
                 format!(

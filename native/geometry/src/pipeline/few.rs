@@ -49,7 +49,7 @@ impl Wanted<'_> {
             && self.n_faces <= MOST_OF_GRID
             && mesh.n_faces() <= TRIANGLES_PER_QUAD * self.n_faces
             && (whole.shape.n_borders, whole.shape.genus) == (1, Some(0));
-        if !is_wanted || self.density.on(mesh).is_some() {
+        if !is_wanted || !self.strokes.is_empty() || self.density.on(mesh).is_some() {
             return Ok(None);
         }
         // A sharp diagonal, as of a card that is twisted, is no line.

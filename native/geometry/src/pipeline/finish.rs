@@ -10,6 +10,7 @@ use super::origins::origins;
 use super::scored::{Judged, judge, sound};
 use super::split::Parts;
 use super::stay::{Elements, Staying};
+use super::strokes::{GuideReport, Strokes};
 use super::{Error, Input, Remeshed, Report, Settings, VERSION};
 use crate::mesh::PolygonMesh;
 use crate::nearest::Bvh;
@@ -27,6 +28,7 @@ pub struct Made<'a> {
     pub prepared: Prepared,
     pub plane: Option<Plane>,
     pub joined: Joined,
+    pub strokes: Strokes,
 }
 
 impl Made<'_> {
@@ -47,16 +49,18 @@ impl Made<'_> {
         let carrying = || self.elements(&staying, &stage);
         let (mut made, carried) = clock.step("transfer", carrying)?;
         let stage = progress.part("score", 0.92, 1.0);
-        let judged = judge(
+        let guides = clock.step("score", || self.strokes.told(&self.joined.mesh, &stage))?;
+        let mut judged = judge(
             (self.given.mesh, &self.parts),
             (&self.prepared, self.plane),
             (self.input.mesh, self.input.marked),
             (&made.mesh, &self.joined),
             (self.settings, &mut clock, &stage),
         )?;
+        judged.heed(&guides, self.settings);
         staying.append(&self.given, &mut made);
         let settings = self.settings;
-        let report = self.report(&made.mesh, (carried, judged), clock, progress)?;
+        let report = self.report(&made.mesh, (carried, judged, guides), clock, progress)?;
         progress.at(1.0)?;
         let report = sound(report, settings)?;
         Ok(made.told(crosses, staying.n_faces(), report))
@@ -65,7 +69,7 @@ impl Made<'_> {
     fn report(
         self,
         output: &PolygonMesh,
-        (carried, judged): (Option<CarriedReport>, Judged),
+        (carried, judged, guides): (Option<CarriedReport>, Judged, Vec<GuideReport>),
         clock: Clock,
         progress: &Progress<'_>,
     ) -> Result<Report, Cancelled> {
@@ -82,6 +86,7 @@ impl Made<'_> {
             kept: self.parts.kept,
             carried,
             rejoined: self.joined.rejoined,
+            guides,
             score: judged.score,
             score_refused: judged.refused,
             warnings: judged.warnings,

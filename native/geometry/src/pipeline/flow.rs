@@ -1,5 +1,6 @@
 //! Quads that flow: an even surface, its flow, a cover of the sphere, the fit.
 
+mod drawn;
 mod fit;
 mod ground;
 
@@ -9,10 +10,11 @@ use super::even::{For, Marked, even};
 use super::flowed::{FlowedPart, better};
 use super::open::Opening;
 use super::paired::told;
+use super::strokes::{Finer, OnPart};
 use super::{Error, Settings, mirror};
 use crate::deform::Target;
 use crate::flow;
-use crate::measure::FeatureLine;
+use crate::measure::{FeatureLine, total_area};
 use crate::mesh::{HalfedgeMap, VertexMap};
 use crate::mirror::Doubled;
 use crate::progress::{Cancelled, Progress};
@@ -36,6 +38,8 @@ pub struct Asked<'a> {
     pub axis: Option<usize>,
     /// What is real of a part that was closed, and where its borders lie.
     pub opening: Option<&'a Opening>,
+    /// The strokes that somebody drew on it.
+    pub strokes: OnPart<'a>,
 }
 
 impl Asked<'_> {
@@ -65,21 +69,41 @@ pub fn along(
 ) -> Result<Result<FlowedPart, String>, Cancelled> {
     let part = progress.part("sphere", 0.0, 0.15);
     let ground = clock.step("sphere", || ground((map, target), (asked, lines), &part))?;
-    let ground = match ground {
+    let mut ground = match ground {
         Ok(ground) => ground,
         Err(reason) => return Ok(Err(reason)),
     };
-    let part = progress.part("", 0.15, 1.0);
     let sheet = asked.opening.filter(|opening| opening.is_sheet());
     let symmetry = match (sheet, asked.axis) {
         (Some(sheet), _) => Some(Symmetry::OtherSide(sheet)),
         (None, Some(axis)) => Some(Symmetry::Plane(axis)),
         (None, None) => None,
     };
-    let found = match symmetry {
-        Some(symmetry) => symmetric((ground, symmetry), budget, clock, &part),
-        None => ground.best(budget, clock, &part),
-    }?;
+    let split = if ground.is_strict { 0.6 } else { 1.0 };
+    let part = progress.part("", 0.15, split);
+    let mut found = found((&mut ground, symmetry), budget, clock, &part)?;
+    if std::env::var("ORB_DEBUG").is_ok() {
+        match &found {
+            Ok(f) => eprintln!(
+                "strict {} lost {} failed {} missed {} {:?}",
+                ground.is_strict,
+                f.lost,
+                f.n_failed(),
+                f.n_missed,
+                f.deformed.report
+            ),
+            Err(e) => eprintln!("strict {} err {e}", ground.is_strict),
+        }
+    }
+    if ground.is_strict && found.as_ref().map_or(true, |found| !found.is_sound()) {
+        // Lines that need not be met leave more ways out.
+        ground.is_strict = false;
+        let mut own = budget.after(0, 0);
+        let part = progress.part("", split, 1.0);
+        let softer = self::found((&mut ground, symmetry), &mut own, clock, &part)?;
+        budget.n_attempts = own.n_attempts;
+        found = better(found, softer);
+    }
     let of_sheet = "it is a sheet, whose sides are each other's images".to_owned();
     let found = found.map(|found| match (sheet, asked.axis) {
         (Some(_), axis) => FlowedPart {
@@ -91,6 +115,19 @@ pub fn along(
     Ok(found.map(|found| found.found_in(budget.n_attempts)))
 }
 
+/// Quads on an even surface, of one side alone where they are to be symmetric.
+fn found(
+    (ground, symmetry): (&mut Ground<'_>, Option<Symmetry<'_>>),
+    budget: &mut Budget,
+    clock: &mut Clock,
+    progress: &Progress<'_>,
+) -> Result<Result<FlowedPart, String>, Cancelled> {
+    match symmetry {
+        Some(symmetry) => symmetric((ground, symmetry), budget, clock, progress),
+        None => ground.best(budget, clock, progress),
+    }
+}
+
 /// An even surface for quads along some lines; the text of the inner error is why there is none.
 fn ground<'a>(
     (map, target): (&SphereMap, &'a Target),
@@ -99,13 +136,15 @@ fn ground<'a>(
 ) -> Result<Result<Ground<'a>, String>, Cancelled> {
     let wanted = Marked::new(target.mesh(), asked.marked);
     let mut style = asked.settings.flow(asked.n_quads);
-    if !wanted.is_empty() {
+    if !wanted.is_empty() || !asked.strokes.is_empty() {
         style.field.alignment *= BESIDE_MARKS;
     }
     if !lines.is_empty() {
         style.creases = flow::Creases::All;
     }
     let borders = asked.opening.map_or(&[][..], |opening| &opening.lines);
+    let edge = (total_area(target.mesh()) / asked.n_quads.max(1) as f64).sqrt();
+    let finer = Finer::new(asked.strokes, edge);
     let quads = For {
         n_quads: asked.n_quads,
         sizes: &style.sizes,
@@ -113,13 +152,24 @@ fn ground<'a>(
         lines: if lines.is_empty() { borders } else { lines },
         is_solid: !lines.is_empty(),
         opening: asked.opening,
+        finer: &finer,
     };
-    let even = told(even(map, (target, &wanted), &quads, progress))?;
-    Ok(even.map(|even| Ground {
-        sphere: even.sphere.clone(),
-        surface: Surface::new(even, (asked.opening, target)),
+    let even = match told(even(map, (target, &wanted), &quads, progress))? {
+        Ok(even) => even,
+        Err(reason) => return Ok(Err(reason)),
+    };
+    let sphere = even.sphere.clone();
+    let surface = Surface::new(even, (asked.opening, target));
+    let surface = surface.drawn((asked, target, edge), progress)?;
+    let exact = surface.strokes.as_ref().map(|strokes| &strokes.exact);
+    let exact = exact.map(|exact| Marked::new(surface.even.mesh(), exact));
+    Ok(Ok(Ground {
+        wanted: wanted.and(exact),
+        is_strict: surface.strokes.is_some(),
+        finer,
+        sphere,
+        surface,
         target,
-        wanted,
         asked,
         style,
     }))
@@ -137,13 +187,13 @@ enum Symmetry<'a> {
 /// Quads that are their own image, or the usual ones where these cannot be or miss less of the
 /// surface.
 fn symmetric(
-    (mut ground, symmetry): (Ground<'_>, Symmetry<'_>),
+    (ground, symmetry): (&mut Ground<'_>, Symmetry<'_>),
     budget: &mut Budget,
     clock: &mut Clock,
     progress: &Progress<'_>,
 ) -> Result<Result<FlowedPart, String>, Cancelled> {
     let part = progress.part("sphere", 0.0, 0.05);
-    let found = clock.step("sphere", || told(own_image(&ground, symmetry, &part)))?;
+    let found = clock.step("sphere", || told(own_image(ground, symmetry, &part)))?;
     let mut symmetric = None;
     let reason = match found.flatten() {
         Ok((even, doubled)) => {
@@ -188,7 +238,9 @@ fn own_image(
         }
         (Symmetry::OtherSide(_), None) => Ok(Err("it has no borders".to_owned())),
         (Symmetry::Plane(axis), _) => {
-            let lines = ground.keeps_lines().then_some(&surface.lines);
+            let has_strokes = !ground.asked.strokes.is_empty();
+            let keeps = ground.keeps_lines() || has_strokes;
+            let lines = keeps.then_some(&surface.lines);
             mirror::symmetric((&surface.even, lines), axis, progress)
         }
     }

@@ -55,6 +55,7 @@ mod small;
 mod solid;
 mod split;
 mod stay;
+mod strokes;
 mod uncut;
 mod verbs;
 mod warning;
@@ -80,6 +81,7 @@ pub use scored::score;
 pub use settings::{Kind, MAX_FACES, MIN_FACES, Primitive, Settings, Style};
 pub use small::{MAX_WELD, SmallParts};
 pub use solid::{SOLID_DETAIL, SOLID_DETAILS, Solid};
+pub use strokes::{GuideOutcome, GuideReport};
 pub use verbs::{Decimated, EmbedReport, EmbeddedParts, decimate, embed};
 pub use warning::Warning;
 
@@ -88,6 +90,7 @@ use glam::DVec3;
 use crate::clean;
 use crate::clean::Apart;
 use crate::embed::OffsetPredictor;
+use crate::guidance::Stroke;
 use crate::mesh::{FaceId, PolygonMesh, VertexId};
 use crate::progress::Progress;
 use clock::Clock;
@@ -97,6 +100,7 @@ use finish::Made;
 use frame::Prepared;
 use marks::Marks;
 use split::Parts;
+use strokes::Strokes;
 
 /// The version of Orbflow.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -123,6 +127,8 @@ pub struct Input<'a> {
     /// a set of them for each way in which data is cut. With sets, also without one, the result
     /// says where each of its elements comes from.
     pub cuts: Option<&'a [Vec<[VertexId; 2]>]>,
+    /// Strokes near the mesh that edges of quads that flow are to follow.
+    pub guides: &'a [Stroke],
 }
 
 impl<'a> Input<'a> {
@@ -136,6 +142,7 @@ impl<'a> Input<'a> {
             density: None,
             carried: &[],
             cuts: None,
+            guides: &[],
         }
     }
 }
@@ -182,6 +189,7 @@ pub fn remesh(
 ) -> Result<Remeshed, Error> {
     settings.check()?;
     input.check()?;
+    input.check_guides(settings)?;
     let pool = thread_pool(settings.threads)?;
     pool.install(|| run(input, settings, predictor, progress))
 }
@@ -219,6 +227,8 @@ fn shells(
     };
     let facing = || Prepared::facing(cleaned, &input, settings.mirror(), &stage);
     let (prepared, plane) = clock.step("clean", facing)?;
+    let drawn = || Strokes::new(&input, &prepared, (plane, settings), &stage);
+    let strokes = clock.step("clean", drawn)?;
     let laid = meet::laid(&marked, &parts);
     let common = Common {
         prepared: &prepared,
@@ -228,6 +238,7 @@ fn shells(
         settings,
         plane,
         predictor,
+        strokes: &strokes,
     };
     let each = common.run(&mut clock, progress)?;
     let (prepared, joined) = each.join(prepared, &mut parts, (mesh, settings), progress)?;
@@ -239,6 +250,7 @@ fn shells(
         prepared,
         plane,
         joined,
+        strokes,
     };
     made.finished(clock, progress)
 }

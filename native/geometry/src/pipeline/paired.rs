@@ -273,6 +273,7 @@ mod tests {
             reduced: None,
             marks: &marks,
             density: &density,
+            strokes: crate::pipeline::strokes::OnPart::none(),
             has_tubes: false,
             is_one_of_many: false,
         };

@@ -17,6 +17,7 @@ use super::open::{Closing, Whole};
 use super::paired::{paired, told};
 use super::report::{Mirrored, PartReport};
 use super::settings::{Primitive, Settings};
+use super::strokes::OnPart;
 use super::{Error, ways};
 use crate::deform::Deformed;
 use crate::embed::{Embedded, OffsetPredictor};
@@ -47,6 +48,8 @@ pub struct Wanted<'a> {
     pub reduced: Option<&'a PolygonMesh>,
     pub marks: &'a Marks,
     pub density: &'a Density,
+    /// What the artist drew on it.
+    pub strokes: OnPart<'a>,
     /// Whether all caps of a part with borders lie at the end of tubes.
     pub has_tubes: bool,
     /// Whether there are so many parts that each has to be quick.
@@ -214,6 +217,7 @@ impl Wanted<'_> {
             marked: &ground.marked,
             axis: ground.axis,
             opening: ground.opening.as_ref(),
+            strokes: self.strokes,
         };
         let part = progress.part("", 0.0, 0.9);
         match ways::flow_part(&start.1, &ground.target, wanted, clock, &part)? {

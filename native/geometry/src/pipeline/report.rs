@@ -10,6 +10,7 @@ use super::kept::Kept;
 use super::mirror::Plane;
 use super::settings::Settings;
 use super::solid::Solid;
+use super::strokes::GuideReport;
 use super::warning::Warning;
 use crate::measure::Topology;
 use crate::score::Score;
@@ -42,6 +43,8 @@ pub struct Report {
     pub carried: Option<CarriedReport>,
     /// What became of lines along which sheets meet; none where there were none.
     pub rejoined: Option<Rejoined>,
+    /// What became of strokes, in their order.
+    pub guides: Vec<GuideReport>,
     /// How good the result is; none when it was not asked for or could not be measured.
     pub score: Option<Score>,
     /// Why it could not be measured.

@@ -9,6 +9,7 @@ use super::join::Joined;
 use super::marks::Marks;
 use super::mirror::Plane;
 use super::split::Parts;
+use super::strokes::GuideReport;
 use super::warning::{Made, Warning, warnings};
 use super::{Error, Report, Settings, meet};
 use crate::clean;
@@ -64,6 +65,17 @@ pub fn judge(
         plane,
     };
     judging.judge(settings, clock, progress)
+}
+
+impl Judged {
+    /// Warns of strokes that were to be met and are not.
+    pub fn heed(&mut self, guides: &[GuideReport], settings: &Settings) {
+        let faults = guides.iter().filter_map(GuideReport::fault);
+        self.warnings.extend(faults.map(|fault| Warning {
+            grave: settings.strict,
+            ..Warning::from(fault)
+        }));
+    }
 }
 
 impl Judging<'_> {

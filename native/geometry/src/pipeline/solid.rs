@@ -106,6 +106,7 @@ pub fn run(
         density: outer.density.as_deref(),
         carried: &outer.carried,
         cuts: None,
+        guides: given.guides,
     };
     let stage = progress.part("", 0.1, 0.97);
     let made = shells((inner, clock), settings, predictor, &stage);

@@ -28,6 +28,7 @@ pub fn flow_part(
     let part = progress.part("sphere", 0.0, 0.05);
     let thick = match asked.opening {
         Some(_) => None,
+        None if !asked.strokes.is_empty() => None,
         None => clock.step("sphere", || Thick::new(map, target, asked, &part))?,
     };
     let mut from = 0.0;
@@ -45,7 +46,7 @@ pub fn flow_part(
         }
         budget = budget.after(0, own.n_attempts);
         from = 0.6;
-    } else if asked.opening.is_none() && rods::are_clear(target) {
+    } else if asked.opening.is_none() && asked.strokes.is_empty() && rods::are_clear(target) {
         let wanted = Marked::new(target.mesh(), asked.marked);
         let found = rods::rings(map, (target, &wanted), asked, (clock, &part))?;
         // Where rings cannot be their own image, quads off the metric may.
@@ -72,7 +73,8 @@ fn flowing(
     let style = asked.settings.flow(asked.n_quads);
     let border = asked.opening.map(|opening| &opening.small);
     let lines = even::solid(map.mesh(), style.sharp_angle, border);
-    let lines = lines.filter(|_| Marked::new(target.mesh(), asked.marked).is_empty());
+    let is_bare = Marked::new(target.mesh(), asked.marked).is_empty() && asked.strokes.is_empty();
+    let lines = lines.filter(|_| is_bare);
     let mut from = 0.0;
     if let Some(lines) = lines {
         from = 0.5;

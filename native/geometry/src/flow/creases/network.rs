@@ -58,7 +58,9 @@ impl<'a> Network<'a> {
         Sharp { edges: sharp, firm }: Sharp<'a>,
         mirror: Option<&'a Doubled>,
     ) -> Option<Self> {
-        if !sharp.iter().any(|&is| is) || loose_share(mesh, sharp) > LOOSE {
+        let may_end = firm.is_some_and(|firm| firm.may_end);
+        let is_loose = || !may_end && loose_share(mesh, sharp) > LOOSE;
+        if !sharp.iter().any(|&is| is) || is_loose() {
             return None;
         }
         let is_corner = corners(mesh, Sharp { edges: sharp, firm });

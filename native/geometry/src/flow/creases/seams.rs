@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use super::Line;
 use crate::flow::complex::Complex;
 use crate::measure::{Polyline, Seam};
-use crate::mesh::{Id, TriangleMesh, VertexId};
+use crate::mesh::{HalfedgeMap, Id, TriangleMesh, VertexId};
 
 /// How far a line's span may be off an axis for its walk to arrive: rounding.
 const ON_AXIS: f64 = 1e-6;
@@ -26,11 +26,11 @@ const LEAST_GAP: f64 = 0.3;
 /// The seam of every line; none where it does not run along an axis of a whole metric. It may touch
 /// singularities.
 ///
-/// `lines` are those of `complex.chains` as they were on the mesh, `positions` first ones of the
+/// `drawn` are edges of strokes, `lines` are those of `complex.chains` as they were on the mesh, `positions` first ones of the
 /// quads' vertices. Of the ways that arrive the nearest is taken; firm lines need not be near. A
 /// vertex inside one seam is in no other.
 pub fn seams(
-    mesh: &TriangleMesh,
+    (mesh, drawn): (&TriangleMesh, Option<&HalfedgeMap<bool>>),
     lines: &[&Line],
     complex: &Complex,
     (quads, positions): (&[[u32; 4]], &[DVec3]),
@@ -43,8 +43,12 @@ pub fn seams(
         let is_firm = line.is_firm;
         let span = complex.sum_along(i, &complex.start);
         let walks = walker.along(span, line.kept_ends(complex)).into_iter();
+        let is_drawn = drawn.is_some_and(|drawn| drawn[line.halfedges[0]]);
         let line = polyline(mesh, line);
-        let laid = walks.map(|walk| lay(&line, &walk, positions));
+        let laid = walks.map(|walk| match walk.len() - 1 {
+            n if is_drawn => lay(&line.balanced(line.length() / n as f64), &walk, positions),
+            _ => lay(&line, &walk, positions),
+        });
         let best = laid.reduce(|a, b| if b.0 < a.0 { b } else { a });
         let near = best.filter(|(miss, seam)| is_firm || is_near(seam, *miss));
         let seam = near.map(|(_, seam)| seam).filter(|seam| {

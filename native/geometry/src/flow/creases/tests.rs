@@ -79,6 +79,8 @@ fn quads_of(mesh: TriangleMesh) -> Flow {
         lines: &marked,
         marked: &marked,
         firm: None,
+        turned: None,
+        drawn: None,
         mirror: None,
     };
     flow(&map, guides, &flow::Settings::new(400), &Progress::none()).unwrap()

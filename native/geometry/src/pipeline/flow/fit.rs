@@ -2,8 +2,10 @@
 
 use super::ground::{Ground, Refusal};
 use crate::deform::{self, Deformed, Flowing};
+use crate::elementary::powf;
 use crate::embed::{self, Covered};
 use crate::flow::{self, Flow};
+use crate::mesh::VertexMap;
 use crate::mirror::Reflection;
 use crate::pipeline::attempt::Attempt;
 use crate::pipeline::clock::Clock;
@@ -73,7 +75,7 @@ impl Ground<'_> {
         let mut settings = attempt.settings(&self.style);
         let even = self.surface.even.mesh();
         let weights = |values| density::weights(values, self.target, even);
-        settings.sizes.weights = self.asked.density.map(weights);
+        settings.sizes.weights = self.finer(self.asked.density.map(weights));
         let found = self.find(&settings, progress);
         let is_over = matches!(
             found,
@@ -82,11 +84,30 @@ impl Ground<'_> {
         Ok(told(found)?.map_err(|reason| Refusal { reason, is_over }))
     }
 
+    /// How many more quads per area are wanted at every vertex of the even surface, with what strokes
+    /// want more of them. The flow follows about half of a wish.
+    fn finer(&self, weights: Option<VertexMap<f64>>) -> Option<VertexMap<f64>> {
+        if self.finer.is_empty() {
+            return weights;
+        }
+        let even = self.surface.even.mesh();
+        let mut weights = weights.unwrap_or_else(|| VertexMap::filled(even.n_vertices(), 1.0));
+        for v in even.vertex_ids() {
+            weights[v] *= powf(self.finer.at(even.position(v)), 4.0);
+        }
+        Some(weights)
+    }
+
     /// The flow of the surface, laid on its sphere.
     fn find(&self, settings: &flow::Settings, progress: &Progress<'_>) -> Result<Laid, Error> {
         let surface = &self.surface;
         let part = progress.part("", 0.0, 0.95);
-        let mut flow = flow::flow(&surface.even, surface.guides(), settings, &part)?;
+        let mut flow = flow::flow(
+            &surface.even,
+            surface.guides(self.is_strict),
+            settings,
+            &part,
+        )?;
         if settings.may_exceed {
             flow = flow.thinned(self.asked.n_quads)?;
         }
@@ -109,7 +130,7 @@ impl Ground<'_> {
         let settings = deform::Settings {
             evenness: self.evenness(),
             is_on_lines: self.keeps_lines(),
-            forces_lines: self.asked.opening.is_some(),
+            forces_lines: self.has_firm(),
             is_inscribed: self.is_solid(),
             // What is virtual may lie on what is real.
             separates: self.asked.opening.is_none_or(|opening| !opening.overlaps()),
@@ -135,8 +156,8 @@ impl Ground<'_> {
     /// How much edges wish for one length; where somebody wants quads of other sizes, not at all.
     fn evenness(&self) -> f64 {
         match self.asked.density {
-            None => self.asked.settings.style.evenness(),
-            Some(_) => 0.0,
+            None if self.finer.is_empty() => self.asked.settings.style.evenness(),
+            _ => 0.0,
         }
     }
 }

@@ -11,6 +11,7 @@ use crate::pipeline::flow::Asked;
 use crate::pipeline::flowed::{FlowedPart, better};
 use crate::pipeline::open::Opening;
 use crate::pipeline::rods;
+use crate::pipeline::strokes::Finer;
 use crate::progress::{Cancelled, Progress};
 use crate::sphere;
 use crate::sphere_map::SphereMap;
@@ -23,10 +24,14 @@ pub struct Ground<'a> {
     pub surface: Surface,
     pub sphere: sphere::Report,
     pub target: &'a Target,
-    /// The marked edges of the target.
+    /// The marked edges of the target, and the strokes on it that have to be met.
     pub wanted: Marked,
     pub asked: Asked<'a>,
     pub style: flow::Settings,
+    /// Whether strokes have to be met, or are as marked edges are.
+    pub is_strict: bool,
+    /// Where strokes want smaller quads.
+    pub finer: Finer,
 }
 
 /// An even surface, with those of its edges that quads heed.
@@ -38,8 +43,20 @@ pub struct Surface {
     pub marked: HalfedgeMap<bool>,
     /// Those that lie along borders of a part that was closed.
     pub border: Option<FirmEdges>,
+    /// The same with those along strokes that have to be met, where there are any.
+    pub strokes: Option<Firm>,
+    /// Those along strokes that the field alone turns to.
+    pub turned: Option<HalfedgeMap<bool>>,
     /// Whose image is whose, where the surface is its own image.
     pub doubled: Option<Doubled>,
+}
+
+/// Edges along strokes that have to be met.
+pub struct Firm {
+    /// They, and those along borders.
+    pub edges: FirmEdges,
+    /// They alone.
+    pub exact: HalfedgeMap<bool>,
 }
 
 /// Why an attempt gave no quads.
@@ -58,6 +75,8 @@ impl Surface {
             even: even.map,
             lines: even.lines,
             marked: even.marked,
+            strokes: None,
+            turned: None,
             doubled: None,
         }
     }
@@ -70,22 +89,32 @@ impl Surface {
     ) -> Self {
         let carried = |edges| doubled.carried(self.even.mesh(), edges);
         let border = opening.zip(self.border.as_ref());
+        let border = border
+            .map(|(opening, firm)| opening.firm(doubled.mesh(), carried(&firm.is_on), target));
+        let exact = self.strokes.as_ref().map(|strokes| carried(&strokes.exact));
+        let strokes = exact.and_then(|exact| Firm::new(doubled.mesh(), &exact, border.as_ref()));
         Self {
             lines: carried(&self.lines),
             marked: carried(&self.marked),
-            border: border
-                .map(|(opening, firm)| opening.firm(doubled.mesh(), carried(&firm.is_on), target)),
+            strokes,
+            turned: self.turned.as_ref().map(carried),
+            border,
             even,
             doubled: Some(doubled),
         }
     }
 
-    /// What quads on it have to heed.
-    pub fn guides(&self) -> flow::Guides<'_> {
+    /// What quads on it have to heed, strokes too where these have to be met.
+    pub fn guides(&self, is_strict: bool) -> flow::Guides<'_> {
+        let strokes = self.strokes.as_ref().filter(|_| is_strict);
         flow::Guides {
             lines: &self.lines,
             marked: &self.marked,
-            firm: self.border.as_ref(),
+            firm: strokes
+                .map(|strokes| &strokes.edges)
+                .or(self.border.as_ref()),
+            turned: self.turned.as_ref(),
+            drawn: self.strokes.as_ref().map(|strokes| &strokes.exact),
             mirror: self.doubled.as_ref(),
         }
     }
@@ -112,10 +141,28 @@ impl Ground<'_> {
             from = to;
             budget.is_over |= matches!(found, Err(Refusal { is_over: true, .. }));
             let found = found.map_err(|refusal| refusal.reason);
+            if std::env::var("ORB_DEBUG").is_ok() {
+                match &found {
+                    Ok(f) => eprintln!(
+                        "  {attempt:?} lost {} failed {} missed {} inv {} cross {} {:?}",
+                        f.lost,
+                        f.n_failed(),
+                        f.n_missed,
+                        f.deformed.report.n_inverted,
+                        f.deformed.report.n_crossing_left,
+                        match &f.flowed {
+                            super::super::flowed::Flowed::Used { flow, .. } => flow.n_creases,
+                            _ => [0, 0],
+                        }
+                    ),
+                    Err(e) => eprintln!("  {attempt:?} err {e}"),
+                }
+            }
             best = better(best, found.and_then(FlowedPart::not_cut_off));
             let is_usual = attempt == Attempt::Usual;
             let is_failing = best.as_ref().map_or(true, |best| best.n_failed() > 0);
-            if is_usual && is_failing && self.asked.opening.is_none() {
+            let may_ring = self.asked.opening.is_none() && !self.asked.strokes.has_exact();
+            if is_usual && is_failing && may_ring {
                 best = better(best, self.rings(clock, &progress.part("", from, from))?);
             }
             let is_done =
@@ -141,7 +188,7 @@ impl Ground<'_> {
         // Without strips nothing is its own image.
         let is_flowing = best.as_ref().is_ok_and(|best| !best.is_last_resort());
         // Nor do lines stay that have to be met.
-        let is_bound = self.surface.doubled.is_some() || self.asked.opening.is_some();
+        let is_bound = self.surface.doubled.is_some() || self.has_firm();
         if attempt.is_last_resort() && (is_flowing || is_bound) {
             return false;
         }
@@ -174,14 +221,19 @@ impl Ground<'_> {
         match best {
             Ok(best) => usize::from(is_symmetric && best.n_missed > 0),
             // Strips are not taken out of quads with borders.
-            Err(_) if self.asked.opening.is_some() => usize::from(is_symmetric),
+            Err(_) if self.has_firm() => usize::from(is_symmetric),
             Err(_) => budget.kept_back(is_symmetric),
         }
     }
 
     /// Whether there are lines that have to be met.
     pub fn keeps_lines(&self) -> bool {
-        self.is_solid() || self.asked.opening.is_some()
+        self.is_solid() || self.has_firm()
+    }
+
+    /// Whether there are borders or strokes that have to be met.
+    pub fn has_firm(&self) -> bool {
+        self.asked.opening.is_some() || (self.is_strict && self.surface.strokes.is_some())
     }
 
     /// Whether all sharp edges are followed.

@@ -33,6 +33,7 @@ impl Opening {
             }),
             is_on,
             is_corner,
+            may_end: false,
         }
     }
 
