@@ -23,6 +23,10 @@ MARKS = (
     ("SEAM", "Seam", "Edges marked as seams of the UV map"),
     ("UV", "UV Islands", "Borders of islands of the active UV map, marked as seams or not"),
 )
+STRENGTHS = (
+    ("FOLLOW", "Follow", "Edges run along a guide, on it or beside it"),
+    ("EXACT", "Exact", "Edges lie on a guide, as on a sharp edge"),
+)
 SMALL_PARTS = (
     ("KEEP", "Keep", "They stay as they were"),
     ("DROP", "Leave Out", "The result is without them"),

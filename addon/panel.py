@@ -23,7 +23,7 @@ _ICONS = {"refused": "CANCEL", "warned": "ERROR", "done": "CHECKMARK"}
 # Shares of the input that have a button.
 _RATIOS = (10, 25, 50)
 # What stands in an empty field.
-_PLACEHOLDERS = {"density": "Group or Color"}
+_PLACEHOLDERS = {"density": "Group or Color", "guides": "Collection or Object"}
 _ROWS = (
     ("Faces", "n_faces", "{:,}"),
     ("Quads", "quads_pct", "{:.0f} %"),
@@ -161,7 +161,7 @@ def rows(report: dict[str, Any]) -> list[tuple[str, str]]:
         for what, name, form in _ROWS
         if figures.get(name) is not None
     ]
-    return _symmetry(report) + score + _proposal(report["embedding"])
+    return _symmetry(report) + words.guides(report) + score + _proposal(report["embedding"])
 
 
 def _symmetry(report: dict[str, Any]) -> list[tuple[str, str]]:
@@ -241,7 +241,7 @@ def _draw_score(column: bpy.types.UILayout, report: dict[str, Any], n_letters: i
     for text in words.faults(report):
         _draw_text(column, text, "ERROR", n_letters)
     # These have rows of their own, with the button Show.
-    shown = [] if report["half"] else words.filled(report)
+    shown = words.lost_guides(report) + ([] if report["half"] else words.filled(report))
     for text in words.exceptions(report):
         if text not in shown:
             _draw_text(column, text, "INFO", n_letters)
