@@ -50,9 +50,7 @@ def edges(name: str, points: Any, pairs: Any) -> Any:  # noqa: ANN401
 
 def pencil(name: str, *lines: Any) -> Any:  # noqa: ANN401
     """A Grease Pencil object with a layer of strokes, the last of them closed."""
-    many = bpy.data.grease_pencils if hasattr(bpy.data, "annotations") else None
-    many = many or getattr(bpy.data, "grease_pencils_v3", None) or bpy.data.grease_pencils
-    data = many.new(name)
+    data = getattr(bpy.data, "grease_pencils_v3", bpy.data.grease_pencils).new(name)
     if IS_OLD:
         frame = data.layers.new("Lines").frames.new(1)
         strokes = [frame.strokes.new() for _ in lines]
@@ -76,6 +74,8 @@ def annotate(*lines: Any) -> None:  # noqa: ANN401
     is_new = hasattr(bpy.data, "annotations")
     notes = (bpy.data.annotations if is_new else bpy.data.grease_pencils).new("Annotations")
     frame = notes.layers.new("Note").frames.new(1)
+    if not hasattr(frame.strokes, "new"):
+        pytest.skip("here annotations are drawn by hand alone")
     for points in lines:
         stroke = frame.strokes.new()
         stroke.points.add(len(points))
@@ -144,7 +144,8 @@ def test_curves_are_read_as_they_are_seen_but_for_their_thickness(open_fixture: 
     assert radii == pytest.approx(np.full(20, 2), abs=0.06)
     assert line.points[0] == pytest.approx((0, 6, 7))
     assert line.points[-1] == pytest.approx((6, 6, 9))
-    thing.modifiers.new("Mirror", "MIRROR").use_axis = (False, True, False)
+    mirror = thing.modifiers.new("Mirror", "MIRROR")
+    mirror.use_axis, mirror.use_mirror_merge = (False, True, False), False
     assert len(read("Loop")) == 4
     assert [each.name for each in bpy.data.curves] == ["Loop"]
     assert len(bpy.data.objects) == 3
