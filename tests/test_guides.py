@@ -162,11 +162,13 @@ def test_grease_pencil_is_read_at_the_current_frame_without_hidden_layers(
     assert line.points == pytest.approx(np.add(LINE, (5, 0, 0)))
     assert ring.points == pytest.approx(np.add(RING, (5, 0, 0)), abs=1e-6)
     assert (line.name, ring.name) == ("Ink, stroke 1", "Ink, stroke 2")
-    follower = bpy.data.objects["Second"]
-    thing.data.layers[0].parent = follower
+    follower, layer = bpy.data.objects["Second"], thing.data.layers[0]
+    setattr(layer, "location" if IS_OLD else "translation", (0, 1, 0))
+    assert read("Ink")[0].points == pytest.approx(np.add(LINE, (5, 1, 0)), abs=1e-6)
+    layer.parent = follower
     follower.location.z += 3
-    assert read("Ink")[0].points == pytest.approx(np.add(LINE, (0, 0, 3)), abs=1e-6)
-    thing.data.layers[0].hide = True
+    assert read("Ink")[0].points == pytest.approx(np.add(LINE, (0, 1, 3)), abs=1e-6)
+    layer.hide = True
     assert read("Ink") == []
 
 

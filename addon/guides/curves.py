@@ -36,7 +36,7 @@ def of_mesh(seen: bpy.types.Object) -> list[Line]:
     return [(points[chain], is_closed) for chain, is_closed in found]
 
 
-def of_layout(offsets: NDArray[np.int32], layers: bpy.types.AttributeGroupMesh) -> Iterator[Line]:
+def of_layout(offsets: NDArray[np.int32], layers: bpy.types.bpy_prop_collection) -> Iterator[Line]:
     """The lines of hair curves or of a drawing, whose points begin at these."""
     if len(offsets) < 2:
         return
@@ -48,7 +48,7 @@ def of_layout(offsets: NDArray[np.int32], layers: bpy.types.AttributeGroupMesh) 
 
 
 def of_curves(
-    layers: bpy.types.AttributeGroupMesh, name: str, n: int
+    layers: bpy.types.bpy_prop_collection, name: str, n: int
 ) -> NDArray[np.int32] | NDArray[np.bool_]:
     """An attribute of curves; 0 where there is none such."""
     attribute = layers.get(name)

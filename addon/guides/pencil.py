@@ -72,17 +72,18 @@ def _is_hidden(layer: bpy.types.ID) -> bool:
 
 
 def _placed(seen: bpy.types.Object, layer: bpy.types.ID) -> Points:
-    """From the space of a layer to that of the scene."""
-    is_new = seen.type == "GREASEPENCIL"
-    own = np.array(layer.matrix_local if is_new else layer.matrix_layer)
+    """From the space of an evaluated layer to that of the scene."""
+    if seen.type == "GPENCIL":
+        # Evaluated points are in the space of the object, whatever the layer follows.
+        return np.array(seen.matrix_world)
+    own = np.array(layer.matrix_local)
     if layer.parent is None:
         return np.array(seen.matrix_world) @ own
-    inverse = layer.matrix_parent_inverse if is_new else layer.matrix_inverse
     parent = np.array(layer.parent.matrix_world)
     pose = layer.parent.pose if layer.parent_bone else None
     if pose and (bone := pose.bones.get(layer.parent_bone)):
         parent = parent @ np.array(bone.matrix)
-    return parent @ np.array(inverse) @ own
+    return parent @ np.array(layer.matrix_parent_inverse) @ own
 
 
 def _of_layer(layer: bpy.types.ID) -> Iterator[tuple[Points, bool, int]]:
