@@ -8,8 +8,8 @@ is said of a run.
 
 import bpy
 
-from . import overlay, panel, preferences, runs, settings
-from .operators import cancel, paint, remesh, show
+from . import overlay, panel, preferences, runs, settings, tool
+from .operators import cancel, draw_guide, erase_guide, paint, remesh, show
 
 _CLASSES = (
     preferences.OrbflowPreferences,
@@ -17,6 +17,10 @@ _CLASSES = (
     remesh.OBJECT_OT_orbflow_remesh,
     cancel.OBJECT_OT_orbflow_cancel,
     paint.OBJECT_OT_orbflow_paint_density,
+    draw_guide.OrbflowPlace,
+    draw_guide.OBJECT_OT_orbflow_draw_guide,
+    erase_guide.OBJECT_OT_orbflow_erase_guide,
+    tool.OBJECT_OT_orbflow_draw_guides,
     show.OBJECT_OT_orbflow_show,
     panel.VIEW3D_PT_orbflow,
 )
@@ -30,10 +34,12 @@ def register() -> None:
     bpy.types.VIEW3D_MT_object.append(panel.draw_menu)
     runs.register()
     overlay.register()
+    tool.register()
 
 
 def unregister() -> None:
     """Called by Blender when the extension is switched off."""
+    tool.unregister()
     overlay.unregister()
     runs.unregister()
     bpy.types.VIEW3D_MT_object.remove(panel.draw_menu)

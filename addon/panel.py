@@ -60,13 +60,8 @@ class VIEW3D_PT_orbflow(bpy.types.Panel):
             _draw_lines(layout.box().column(align=True), lines, n_letters)
         if left := runs.left_of(context.object):
             _draw_left(layout.box().column(align=True), context.object.name, left, context)
-        for title, names in settings.SECTIONS.items():
-            header, body = layout.panel(f"orbflow_{title}", default_closed=True)
-            header.label(text=title)
-            if body:
-                _draw_settings(body, wanted, names)
-                if "density" in names:
-                    body.operator("object.orbflow_paint_density", icon="BRUSH_DATA")
+        for title in settings.SECTIONS:
+            _draw_section(layout, wanted, title)
         column = layout.column(heading="Show")
         column.prop(context.scene.orbflow, "show_irregular")
         last = runs.last_of(context.object)
@@ -75,6 +70,20 @@ class VIEW3D_PT_orbflow(bpy.types.Panel):
         crosses.prop(context.scene.orbflow, "show_crosses")
         if last:
             _draw_score(layout.box().column(align=True), last.report, n_letters)
+
+
+def _draw_section(layout: bpy.types.UILayout, wanted: settings.Settings, title: str) -> None:
+    """A section of settings that opens, with its buttons."""
+    header, body = layout.panel(f"orbflow_{title}", default_closed=True)
+    header.label(text=title)
+    if body is None:
+        return
+    names = settings.SECTIONS[title]
+    _draw_settings(body, wanted, names)
+    if "guides" in names:
+        body.operator("object.orbflow_draw_guides", icon="GREASEPENCIL")
+    if "density" in names:
+        body.operator("object.orbflow_paint_density", icon="BRUSH_DATA")
 
 
 def draw_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:

@@ -46,7 +46,7 @@ def read(context: bpy.types.Context, name: str, is_exact: bool) -> list[Stroke] 
     """
     if not name:
         return None
-    things = _things(context, name)
+    things = things_of(context, name)
     if things is not None:
         shown = [each for each in things if _holds(each) and each.visible_get()]
         return list(_of_objects(context, shown, is_exact))
@@ -87,7 +87,7 @@ def _holds(thing: bpy.types.Object) -> bool:
     return thing.type in {"CURVE", "CURVES", *pencil.TYPES} or curves.is_edges(thing)
 
 
-def _things(context: bpy.types.Context, name: str) -> list[bpy.types.Object] | None:
+def things_of(context: bpy.types.Context, name: str) -> list[bpy.types.Object] | None:
     """The objects of a collection or object of the scene; none where there is none."""
     for each in _collections(context.scene):
         if each.name == name and each.library is None:
