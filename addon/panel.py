@@ -247,10 +247,11 @@ def _draw_text(column: bpy.types.UILayout, text: str, icon: str, n_letters: int)
 
 
 def _draw_score(column: bpy.types.UILayout, report: dict[str, Any], n_letters: int) -> None:
-    for text in words.faults(report):
-        _draw_text(column, text, "ERROR", n_letters)
     # These have rows of their own, with the button Show.
     shown = words.lost_guides(report) + ([] if report["half"] else words.filled(report))
+    for text in words.faults(report):
+        if text not in shown:
+            _draw_text(column, text, "ERROR", n_letters)
     for text in words.exceptions(report):
         if text not in shown:
             _draw_text(column, text, "INFO", n_letters)

@@ -186,7 +186,7 @@ def exceptions(report: dict[str, Any]) -> list[str]:
     told += [_cleaned(report), _welded(report), _parted(report), _shown(report)]
     told += [_solid(report["solid"])] if report.get("solid") else []
     told += filled(report) + _modifiers(report)
-    told += lost_guides(report)
+    told += [each for each in lost_guides(report) if each not in faults(report)]
     told += ["nothing that is shown of the guides lies where it is"] * report["is_unguided"]
     return [each for each in told if each]
 

@@ -283,12 +283,16 @@ def test_guides_are_told_of_and_lost_ones_can_be_shown(
     def run(*given: Any) -> Any:  # noqa: ANN401
         result = real(*given)
         told = [outcome(0, "followed", 0.25, 11.4), outcome(1, "laid", 0.0, None)]
-        return Stood(result, result.report | {"guides": [*told, outcome(2, "lost", None, None)]})
+        told = [*told, outcome(2, "lost", None, None)]
+        warned = [{"kind": "guide", "text": "guide 2 is lost: it is far off", "grave": False}]
+        return Stood(result, result.report | {"guides": told, "warnings": warned})
 
     monkeypatch.setattr(job, "_remesh_one", run)
     press.orbflow_remesh(faces=200, guides="Lines")
     report = addon("runs").last_report(first.name)
-    assert "1 of 3 guides is lost: Lines, stroke 3" in addon("words").sentence(report)
+    lost = "1 of 3 guides is lost: Lines, stroke 3"
+    assert addon("words").sentence(report).count("lost") == 1
+    assert addon("words").warnings(report) == [lost]
     rows = dict(addon("panel").rows(report))
     assert rows["Guides"] == "1 laid, 1 followed, 1 lost"
     assert rows["Off guides by"] == "0.25 edges, 11°"
@@ -296,7 +300,7 @@ def test_guides_are_told_of_and_lost_ones_can_be_shown(
     texts = [text for text, _ in layout.drawn]
     row = texts.index("DOT guide Lines, stroke 3 is lost")
     assert texts[row + 1] == "NONE Show"
-    assert "INFO 1 of 3 guides is lost: Lines, stroke 3" not in texts
+    assert not {f"INFO {lost}", f"ERROR {lost}"} & set(texts)
     press.orbflow_show(name=first.name, row=layout.buttons[row + 1].row)
     bpy.ops.object.mode_set(mode="OBJECT")
     chosen = [face.center for face in first.data.polygons if face.select]
@@ -323,6 +327,17 @@ def test_guides_that_guide_nothing_are_told_of(open_fixture: Open) -> None:
     assert any("nothing that is shown of the guides" in each for each in told_of(report))
     press.orbflow_remesh(faces=200)
     assert not any("guides" in each for each in told_of(addon("runs").last_report(first.name)))
+
+
+def test_only_quads_that_flow_are_guided(open_fixture: Open) -> None:
+    open_fixture("03")
+    curve("Lines", LINE)
+    wanted = bpy.context.scene.orbflow
+    wanted.guides = "Lines"
+    tasks = addon("operators.remesh")._tasks
+    assert len(tasks(bpy.context, wanted)[0].guides) == 1
+    wanted.kind = "TRIANGLES"
+    assert tasks(bpy.context, wanted)[0].guides is None
 
 
 def told_of(report: dict[str, Any]) -> list[str]:

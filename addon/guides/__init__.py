@@ -12,6 +12,7 @@ from typing import Any
 import bpy
 import numpy as np
 
+from .. import words
 from . import curves, pencil, strokes
 from .strokes import Stroke
 
@@ -75,11 +76,18 @@ def of(
     return tuple(found)
 
 
-def told(given: tuple[Stroke, ...] | None, outcomes: list[dict[str, Any]]) -> dict[str, Any]:
-    """What a report says of strokes: the core's outcome of each, with its name."""
-    strokes_of = given or ()
-    named = [each | {"name": strokes_of[each["guide"]].name} for each in outcomes]
-    return {"guides": named, "is_unguided": given == ()}
+def told(given: tuple[Stroke, ...] | None, report: dict[str, Any]) -> dict[str, Any]:
+    """What a report says of strokes: the core's outcome of each, with its name.
+
+    The core's warnings call them by number: one takes their place.
+    """
+    held = given or ()
+    named = [each | {"name": held[each["guide"]].name} for each in report["guides"]]
+    warnings = [each for each in report["warnings"] if each["kind"] != "guide"]
+    if len(warnings) < len(report["warnings"]):
+        text = words.lost_guides({"guides": named})
+        warnings += [{"kind": "guide", "text": each, "grave": False} for each in text]
+    return {"guides": named, "warnings": warnings, "is_unguided": given == ()}
 
 
 def _holds(thing: bpy.types.Object) -> bool:

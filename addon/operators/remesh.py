@@ -173,8 +173,9 @@ def _is_editable(thing: bpy.types.Object) -> bool:
 def _tasks(context: bpy.types.Context, wanted: settings.Settings) -> list[Todo]:
     context.view_layer.update()
     things = [each for each in context.selected_objects if each.type == "MESH"]
+    named = wanted.guides if settings.is_of_use(wanted, "guides") else ""
     try:
-        drawn = guides.read(context, wanted.guides, wanted.guide_strength == "EXACT")
+        drawn = guides.read(context, named, wanted.guide_strength == "EXACT")
     except guides.NoGuides as error:
         return [Failed(each.name, str(error)) for each in things]
     with stand_ins(context) as copies:
@@ -269,7 +270,7 @@ def _replace(outcome: Done, keep_original: bool) -> dict[str, Any] | Failed:
         thing.data.name = name
     report = outcome.result.report | {"lost": given.lost if given else []}
     report |= modifiers.told(applied)
-    report |= guides.told(task.guides, report["guides"])
+    report |= guides.told(task.guides, report)
     runs.remember(thing, report, outcome.result.crosses)
     return report
 
