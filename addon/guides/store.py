@@ -18,7 +18,7 @@ from .strokes import Points
 Touched = Callable[[Points], bool]
 
 # How thick lines are shown, as a share of the object's size: that hides none of the surface.
-_THICKNESS = 0.0015
+_THICKNESS = 0.0025
 # The materials of strokes that are as strong as the settings say, and of those that are exact.
 _MATERIALS = {False: ("Guide", (1.0, 0.45, 0.05, 1.0)), True: ("Exact Guide", (0.9, 0.1, 0.3, 1.0))}
 

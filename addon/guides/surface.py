@@ -10,12 +10,17 @@ from mathutils import Vector
 from .paths import Line, mirrored
 from .strokes import Points
 
-# A way from point to point that is so many times as long as most may go from an arm to what is seen
-# behind it, or down a slope. It is a slope where all of it is nearer to the surface than this share
-# of its length. Shorter ones cut across sharp edges, where they are a third of it off.
+# A way from point to point that is so many times as long as most, and longer than this share of the
+# object, may go from an arm to what is seen behind it, or down a slope. It is a slope where all of
+# it is nearer to the surface than this share of its length. Shorter ones cut across sharp edges,
+# where they are a third of it off, or go over a ridge to what it hides, where the stroke goes on.
 _LONG = 4.0
+_LEAST_GAP = 0.04
 _OFF = 0.15
 _LOOKED_AT = (0.25, 0.5, 0.75)
+# Lines that are shorter than this share of the object are left out beside longer ones: crumbs that
+# a gap leaves.
+_CRUMB = 0.01
 # So near a plane of symmetry an end is on it, as a share of the object's size.
 _ON_PLANE = 0.02
 
@@ -48,7 +53,7 @@ class Surface:
         A closed row is one closed line, or none of its lines is closed.
         """
         steps = [(b - a).length for a, b in pairwise(places) if a and b]
-        long = _LONG * float(np.median(steps or [0.0]))
+        long = max(_LONG * float(np.median(steps or [0.0])), _LEAST_GAP * self.size)
         runs: list[list[Vector]] = [[]]
         for place in places:
             if place is None or (runs[-1] and not self._holds(runs[-1][-1], place, long)):
@@ -57,7 +62,9 @@ class Surface:
                 runs[-1].append(place)
         first = runs[0]
         is_whole = len(runs) == 1 and len(first) > 2 and self._holds(first[-1], first[0], long)
-        return [(np.array(run), is_closed and is_whole) for run in runs if len(run) > 1]
+        lines = [np.array(run, np.float64) for run in runs if len(run) > 1]
+        some = [line for line in lines if _length(line) > _CRUMB * self.size]
+        return [(line, is_closed and is_whole) for line in some or lines]
 
     def snapped(self, points: Points) -> Points:
         """The same points on the surface."""
@@ -81,3 +88,7 @@ class Surface:
             return True
         looked_at = (one.lerp(other, share) for share in _LOOKED_AT)
         return all((self.nearest(at) - at).length <= _OFF * length for at in looked_at)
+
+
+def _length(line: Points) -> float:
+    return float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
