@@ -132,7 +132,7 @@ def _lost(mesh: bpy.types.Mesh, strokes: list[Stroke], outcomes: list[dict[str, 
     return Complaint(told, exact, Spot(np.zeros((0, 2), np.int32), faces, tuple(some[0])))
 
 
-def _middles(mesh: bpy.types.Mesh) -> NDArray[np.float32]:
+def _middles(mesh: bpy.types.Mesh) -> NDArray[np.floating]:
     """The middles of all faces, (F, 3)."""
     starts = attributes.loop_starts(mesh)
     corners = attributes.positions(mesh)[attributes.corner_verts(mesh)]

@@ -208,7 +208,7 @@ def instance(kind: Any) -> Any:  # noqa: ANN401
     """An operator that runs on the events of a test."""
     names = [name for name in dir(kind) if not name.startswith("__") and name != "bl_rna"]
     methods = {name: getattr(kind, name) for name in names if name in vars(kind)}
-    made = type("Made", (), {k: v for k, v in methods.items() if callable(v)})()
+    made: Any = type("Made", (), {k: v for k, v in methods.items() if callable(v)})()
     made.stroke, made.is_exact, made.is_closed = Stroke(), False, False
     made.said = []
     made.report = lambda _level, text: made.said.append(text)

@@ -219,8 +219,8 @@ def test_a_collection_holds_what_is_shown_in_it(open_fixture: Open) -> None:
     assert ("Guides", "Collection") in offered
     assert ("C", "Object") in offered
     assert first.name not in dict(offered)
-    with pytest.raises(RuntimeError, match="is named 'Giudes'; there are: Guides, "):
-        press.orbflow_remesh(faces=200, guides="Giudes")
+    with pytest.raises(RuntimeError, match="is named 'Nowhere'; there are: Guides, "):
+        press.orbflow_remesh(faces=200, guides="Nowhere")
 
 
 def test_strokes_come_in_the_space_of_the_object_that_they_guide(open_fixture: Open) -> None:

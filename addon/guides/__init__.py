@@ -81,7 +81,7 @@ def told(given: tuple[Stroke, ...] | None, report: dict[str, Any]) -> dict[str, 
 
     The core's warnings call them by number: one takes their place.
     """
-    held = given or ()
+    held = list(given or ())
     named = [each | {"name": held[each["guide"]].name} for each in report["guides"]]
     warnings = [each for each in report["warnings"] if each["kind"] != "guide"]
     if len(warnings) < len(report["warnings"]):

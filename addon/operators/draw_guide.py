@@ -145,7 +145,7 @@ def ray(context: bpy.types.Context, point: Any) -> tuple[Vector, Vector]:  # noq
     )
 
 
-def target(context: bpy.types.Context) -> bpy.types.Object | None:
+def target(context: bpy.types.Context) -> Any:  # noqa: ANN401 - an object, or none
     """The mesh object that is drawn on: the active one, or that of active guides."""
     thing = context.object
     if thing is not None and thing.type == "CURVE" and thing.parent is not None:
