@@ -22,6 +22,8 @@ _MOST_LINES = 40
 _ICONS = {"refused": "CANCEL", "warned": "ERROR", "done": "CHECKMARK"}
 # Shares of the input that have a button.
 _RATIOS = (10, 25, 50)
+# Settings of several boxes.
+_BOXES = {"marked_edges"}
 # What stands in an empty field.
 _PLACEHOLDERS = {"density": "Group or Color", "guides": "Collection or Object"}
 _ROWS = (
@@ -133,7 +135,8 @@ def _draw_settings(
     for name in names:
         if not settings.is_shown(wanted, name):
             continue
-        row = layout.row()
+        # Beside each other the names of several boxes would be cut.
+        row = layout.column() if name in _BOXES else layout.row()
         row.active = settings.is_of_use(wanted, name)
         row.prop(wanted, name, placeholder=_PLACEHOLDERS.get(name, ""))
 

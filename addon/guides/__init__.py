@@ -98,7 +98,7 @@ def _holds(thing: bpy.types.Object) -> bool:
 def things_of(context: bpy.types.Context, name: str) -> list[bpy.types.Object] | None:
     """The objects of a collection or object of the scene; none where there is none."""
     for each in _collections(context.scene):
-        if each.name == name and each.library is None:
+        if each.name == name:
             inside = set(each.all_objects)
             return [thing for thing in context.view_layer.objects if thing in inside]
     thing = context.view_layer.objects.get(name)
@@ -106,7 +106,8 @@ def things_of(context: bpy.types.Context, name: str) -> list[bpy.types.Object] |
 
 
 def _collections(scene: bpy.types.Scene) -> list[bpy.types.Collection]:
-    return scene.collection.children_recursive
+    """All of a scene; linked ones, which may have the names of others, last."""
+    return sorted(scene.collection.children_recursive, key=lambda each: each.library is not None)
 
 
 def _annotation(scene: bpy.types.Scene) -> bpy.types.ID | None:

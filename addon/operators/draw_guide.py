@@ -87,7 +87,6 @@ class OBJECT_OT_orbflow_draw_guide(bpy.types.Operator):
         if context.region_data is None:
             return self.execute(context)
         self._path = [(event.mouse_region_x, event.mouse_region_y)]
-        self._surface = Surface(context, target(context))
         _drawn.clear()
         space = bpy.types.SpaceView3D
         self._handle = space.draw_handler_add(_draw, (), "WINDOW", "POST_VIEW")
@@ -112,7 +111,9 @@ class OBJECT_OT_orbflow_draw_guide(bpy.types.Operator):
         """Takes the preview away."""
         bpy.types.SpaceView3D.draw_handler_remove(self._handle, "WINDOW")
         _drawn.clear()
-        context.area.tag_redraw()
+        # Another file may be opened meanwhile.
+        if context.area is not None:
+            context.area.tag_redraw()
 
     def _end(self, context: bpy.types.Context) -> set[str]:
         """Makes a stroke of the path of the mouse."""
@@ -131,8 +132,10 @@ class OBJECT_OT_orbflow_draw_guide(bpy.types.Operator):
 
     def _hits(self, context: bpy.types.Context, line: Any) -> list[Vector | None]:  # noqa: ANN401
         """Where points of the view lie on the surface, in the space of the scene."""
-        matrix = self._surface.thing.matrix_world
-        hits = (self._surface.hit(*ray(context, point)) for point in line)
+        # What is evaluated holds until the next event: a frame that plays makes it anew.
+        surface = Surface(context, target(context))
+        matrix = surface.thing.matrix_world
+        hits = (surface.hit(*ray(context, point)) for point in line)
         return [None if each is None else matrix @ each for each in hits]
 
 

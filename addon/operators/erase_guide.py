@@ -55,7 +55,6 @@ class OBJECT_OT_orbflow_erase_guide(bpy.types.Operator):
         """Starts to erase."""
         if context.region_data is None:
             return self.execute(context)
-        self._surface = Surface(context, draw_guide.target(context))
         self._n = 0
         context.window_manager.modal_handler_add(self)
         self._touch(context, event)
@@ -89,12 +88,13 @@ class OBJECT_OT_orbflow_erase_guide(bpy.types.Operator):
 
     def _is_seen(self, context: bpy.types.Context, at: Vector, place: Vector) -> bool:
         """Whether nothing of the surface is before a place that is at a point of the view."""
+        surface = Surface(context, draw_guide.target(context))
         origin, ahead = draw_guide.ray(context, at)
-        hit = self._surface.hit(origin, ahead)
+        hit = surface.hit(origin, ahead)
         if hit is None:
             return True
-        matrix = self._surface.thing.matrix_world
-        size = self._surface.size * max(map(abs, matrix.to_scale()))
+        matrix = surface.thing.matrix_world
+        size = surface.size * max(map(abs, matrix.to_scale()))
         return (place - matrix @ hit).dot(ahead) <= _DEPTH * size
 
     def _told(self, n: int) -> set[str]:
