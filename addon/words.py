@@ -241,13 +241,18 @@ def guides(report: dict[str, Any]) -> list[tuple[str, str]]:
     if not given:
         return []
     rows = [("Guides", ", ".join(f"{n:,} {name}" for n, name in counts if n))]
-    heeded = [each for each in given if each["outcome"] != "lost"]
+    off = off_guides([each for each in given if each["outcome"] != "lost"])
+    return rows + ([("Off guides by", off)] if off else [])
+
+
+def off_guides(given: list[dict[str, Any]]) -> str:
+    """How far edges are off some of the artist's lines, of the worst; empty where nobody knows."""
     off = [
         form.format(max(figures))
         for name, form in (("distance", "{:.2f} edges"), ("angle", "{:.0f}°"))
-        if (figures := [each[name] for each in heeded if each[name] is not None])
+        if (figures := [each[name] for each in given if each[name] is not None])
     ]
-    return rows + ([("Off guides by", ", ".join(off))] if off else [])
+    return ", ".join(off)
 
 
 def _solid(solid: dict[str, Any]) -> str:
