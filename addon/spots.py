@@ -130,7 +130,7 @@ def _lost(mesh: bpy.types.Mesh, strokes: list[Stroke], outcomes: list[dict[str, 
     if len(strokes) > 1:
         told = f"{len(strokes):,} guides are lost"
     elif off := words.off_guides(outcomes):
-        told += f": edges are off by {off}"
+        told += f": {off} off"
     return Complaint(told, exact, Spot(np.zeros((0, 2), np.int32), faces, tuple(some[0])))
 
 

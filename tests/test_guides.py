@@ -298,7 +298,7 @@ def test_guides_are_told_of_and_lost_ones_can_be_shown(
     assert rows["Off guides by"] == "0.25 edges, 11°"
     layout = panel_of(first, width=1200)
     texts = [text for text, _ in layout.drawn]
-    row = texts.index("DOT guide Lines, stroke 3 is lost: edges are off by 0.09 edges, 12°")
+    row = texts.index("DOT guide Lines, stroke 3 is lost: 0.09 edges, 12° off")
     assert texts[row + 1] == "NONE Show"
     assert not {f"INFO {lost}", f"ERROR {lost}"} & set(texts)
     press.orbflow_show(name=first.name, row=layout.buttons[row + 1].row)
