@@ -8,8 +8,18 @@ is said of a run.
 
 import bpy
 
-from . import earlier, originals, overlay, panel, preferences, runs, settings
-from .operators import before, cancel, detail, normal_map, paint, remesh, show
+from . import earlier, originals, overlay, panel, preferences, runs, settings, tool
+from .operators import (
+    before,
+    cancel,
+    detail,
+    draw_guide,
+    erase_guide,
+    normal_map,
+    paint,
+    remesh,
+    show,
+)
 
 _CLASSES = (
     preferences.OrbflowPreferences,
@@ -17,6 +27,10 @@ _CLASSES = (
     remesh.OBJECT_OT_orbflow_remesh,
     cancel.OBJECT_OT_orbflow_cancel,
     paint.OBJECT_OT_orbflow_paint_density,
+    draw_guide.OrbflowPlace,
+    draw_guide.OBJECT_OT_orbflow_draw_guide,
+    erase_guide.OBJECT_OT_orbflow_erase_guide,
+    tool.OBJECT_OT_orbflow_draw_guides,
     show.OBJECT_OT_orbflow_show,
     before.OBJECT_OT_orbflow_before,
     detail.OBJECT_OT_orbflow_bake_detail,
@@ -35,10 +49,12 @@ def register() -> None:
     runs.register()
     overlay.register()
     earlier.register()
+    tool.register()
 
 
 def unregister() -> None:
     """Called by Blender when the extension is switched off."""
+    tool.unregister()
     earlier.unregister()
     overlay.unregister()
     runs.unregister()

@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 #: What Blender calls the attribute of seams: now, and in 4.2.
 SEAMS = ("uv_seam", ".uv_seam")
+#: What it calls the attribute of face sets.
+FACE_SETS = ".sculpt_face_set"
 _NUMBERS = {"BOOLEAN": np.bool_, "FLOAT": np.float32, "INT": np.int32}
 
 

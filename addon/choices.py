@@ -22,6 +22,12 @@ MARKS = (
     ("CREASE", "Crease", "Edges with a subdivision crease"),
     ("SEAM", "Seam", "Edges marked as seams of the UV map"),
     ("UV", "UV Islands", "Borders of islands of the active UV map, marked as seams or not"),
+    ("MATERIAL", "Material", "Borders between materials"),
+    ("FACE_SETS", "Face Sets", "Borders between the face sets of sculpt mode"),
+)
+STRENGTHS = (
+    ("FOLLOW", "Follow", "Edges run along a guide, on it or beside it"),
+    ("EXACT", "Exact", "Edges lie on a guide, as on a sharp edge"),
 )
 SMALL_PARTS = (
     ("KEEP", "Keep", "They stay as they were"),

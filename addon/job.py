@@ -12,6 +12,7 @@ import orbflow_native
 
 from . import words
 from .artist import Artist
+from .guides.strokes import Stroke
 from .mesh_arrays import Float, MeshArrays
 from .modifiers import Applied
 
@@ -47,6 +48,8 @@ class Task:
     scale: tuple[float, float, float]
     artist: Artist | None = None
     density: Float | None = None
+    #: The strokes that guide it, in its space; none where no guides were named.
+    guides: tuple[Stroke, ...] | None = None
     #: More objects that get its result: they share its mesh and have its scale.
     others: tuple[str, ...] = ()
     #: How many faces it gets; none: as many as the settings say.
@@ -141,11 +144,17 @@ def _remesh_one(
         carried_edges=artist and artist.edges and artist.edges.ends,
         cut_edges=artist and artist.elements.cuts,
         density=task.density,
+        guides=[_guide(each) for each in task.guides or ()],
         scale=task.scale,
         progress=listener,
         cancel=cancel,
         **settings,
     )
+
+
+def _guide(stroke: Stroke) -> orbflow_native.Guide:
+    points, is_closed = stroke.points, stroke.is_closed
+    return orbflow_native.Guide(points, is_closed=is_closed, is_exact=stroke.is_exact)
 
 
 class Clock:

@@ -32,9 +32,9 @@ class MeshArrays:
     marked_edges: Int | None = None
 
 
-# The attributes of edges that hold the marks, and their types; those of islands are found.
+# The attributes of edges that hold the marks, and their types; borders are found.
 _MARKS = {
-    "UV": [],
+    **{name: [] for name in cuts.BORDERS},
     "SHARP": [("sharp_edge", "BOOLEAN")],
     "CREASE": [("crease_edge", "FLOAT")],
     "SEAM": [(name, "BOOLEAN") for name in attributes.SEAMS],
@@ -78,8 +78,7 @@ def _marked(mesh: bpy.types.Mesh, marks: Iterable[str]) -> Int | None:
         if values is not None:
             found |= values > 0
     ends = attributes.edge_verts(mesh)[found]
-    if "UV" in marks:
-        ends = np.concatenate([ends, cuts.of_islands(mesh)])
+    ends = np.concatenate([ends, cuts.of_borders(mesh, marks & cuts.BORDERS.keys())])
     return ends if len(ends) else None
 
 

@@ -54,7 +54,9 @@ def done(outcome: Done, report: dict[str, Any], old: Before) -> Told:
     report["nodes"] = [each.name for each in thing.modifiers if modifiers.has_nodes(each)]
     if old.print:
         runs.forget_left(old.print)
-    if complaints := _complaints(outcome, report):
+    complaints = _complaints(outcome, report)
+    complaints += spots.lost(thing.data, task.guides or (), report["guides"])
+    if complaints:
         title = "; ".join(words.counts(report)) if report["kept"] else ""
         runs.remember_left(thing, Left(title, False, complaints))
     state = "warned" if words.warnings(report) else "done"

@@ -22,8 +22,10 @@ _MOST_LINES = 40
 _ICONS = {"refused": "CANCEL", "warned": "ERROR", "done": "CHECKMARK"}
 # Shares of the input that have a button.
 _RATIOS = (10, 25, 50)
+# Settings of several boxes.
+_BOXES = {"marked_edges"}
 # What stands in an empty field.
-_PLACEHOLDERS = {"density": "Group or Color"}
+_PLACEHOLDERS = {"density": "Group or Color", "guides": "Collection or Object"}
 _ROWS = (
     ("Faces", "n_faces", "{:,}"),
     ("Quads", "quads_pct", "{:.0f} %"),
@@ -60,13 +62,8 @@ class VIEW3D_PT_orbflow(bpy.types.Panel):
             _draw_lines(layout.box().column(align=True), lines, n_letters)
         if left := runs.left_of(context.object):
             _draw_left(layout.box().column(align=True), context.object.name, left, context)
-        for title, names in settings.SECTIONS.items():
-            header, body = layout.panel(f"orbflow_{title}", default_closed=True)
-            header.label(text=title)
-            if body:
-                _draw_settings(body, wanted, names)
-                if "density" in names:
-                    body.operator("object.orbflow_paint_density", icon="BRUSH_DATA")
+        for title in settings.SECTIONS:
+            _draw_section(layout, wanted, title)
         _draw_detail(layout, context)
         row = layout.row()
         row.active = earlier.may_be(context.object)
@@ -80,6 +77,20 @@ class VIEW3D_PT_orbflow(bpy.types.Panel):
         crosses.prop(context.scene.orbflow, "show_crosses")
         if last:
             _draw_score(layout.box().column(align=True), last.report, n_letters)
+
+
+def _draw_section(layout: bpy.types.UILayout, wanted: settings.Settings, title: str) -> None:
+    """A section of settings that opens, with its buttons."""
+    header, body = layout.panel(f"orbflow_{title}", default_closed=True)
+    header.label(text=title)
+    if body is None:
+        return
+    names = settings.SECTIONS[title]
+    _draw_settings(body, wanted, names)
+    if "guides" in names:
+        body.operator("object.orbflow_draw_guides", icon="GREASEPENCIL")
+    if "density" in names:
+        body.operator("object.orbflow_paint_density", icon="BRUSH_DATA")
 
 
 def _draw_detail(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -142,7 +153,8 @@ def _draw_settings(
     for name in names:
         if not settings.is_shown(wanted, name):
             continue
-        row = layout.row()
+        # Beside each other the names of several boxes would be cut.
+        row = layout.column() if name in _BOXES else layout.row()
         row.active = settings.is_of_use(wanted, name)
         row.prop(wanted, name, placeholder=_PLACEHOLDERS.get(name, ""))
 
@@ -179,7 +191,7 @@ def rows(report: dict[str, Any]) -> list[tuple[str, str]]:
         for what, name, form in _ROWS
         if figures.get(name) is not None
     ]
-    return _symmetry(report) + score + _proposal(report["embedding"])
+    return _symmetry(report) + words.guides(report) + score + _proposal(report["embedding"])
 
 
 def _symmetry(report: dict[str, Any]) -> list[tuple[str, str]]:
@@ -256,10 +268,11 @@ def _draw_text(column: bpy.types.UILayout, text: str, icon: str, n_letters: int)
 
 
 def _draw_score(column: bpy.types.UILayout, report: dict[str, Any], n_letters: int) -> None:
-    for text in words.faults(report):
-        _draw_text(column, text, "ERROR", n_letters)
     # These have rows of their own, with the button Show.
-    shown = [] if report["half"] else words.filled(report)
+    shown = words.lost_guides(report) + ([] if report["half"] else words.filled(report))
+    for text in words.faults(report):
+        if text not in shown:
+            _draw_text(column, text, "ERROR", n_letters)
     for text in words.exceptions(report):
         if text not in shown:
             _draw_text(column, text, "INFO", n_letters)

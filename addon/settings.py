@@ -7,9 +7,9 @@ from typing import Any
 
 import bpy
 import orbflow_native
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
-from . import choices, density, preferences
+from . import choices, named, preferences
 
 # How many crosses of the field a result brings: enough to read the field, a tenth of a megabyte.
 N_CROSSES = 4000
@@ -19,32 +19,6 @@ def _share(name: str, description: str) -> Any:  # noqa: ANN401 - a property tha
     return FloatProperty(
         name=name, description=description, default=0.5, min=0.0, max=1.0, subtype="FACTOR"
     )
-
-
-def _densities(_settings: object, context: bpy.types.Context, _typed: str) -> list[tuple[str, str]]:
-    return density.names(context.object)
-
-
-def _density(**more: object) -> Any:  # noqa: ANN401
-    return StringProperty(
-        name="Density",
-        description=(
-            "Flowing quads: vertex group or color attribute that says where they are small: most "
-            "where it is 1 or white, largest where it is 0 or black; the count stays"
-        ),
-        search=_densities,
-        **more,
-    )
-
-
-# While the operator gives the panel its settings there is no undo step but its own.
-_copying: list[bool] = []
-
-
-def _push_undo(_settings: object, _context: bpy.types.Context) -> None:
-    """Makes an undo step, as Blender does for all fields but those that search."""
-    if not (bpy.app.background or _copying) and bpy.ops.ed.undo_push.poll():
-        bpy.ops.ed.undo_push(message="Density")
 
 
 class Settings:
@@ -95,7 +69,16 @@ class Settings:
     adaptivity: _share(
         "Adaptivity", "Flowing quads: 0 makes all of one size, 1 much smaller ones where it bends"
     )
-    density: _density()
+    density: named.density()
+    guides: named.guides()
+    guide_strength: EnumProperty(
+        name="Guide Strength",
+        description=(
+            "How edges heed a guide whose name, or that of its layer or material, does not begin "
+            "with Follow or Exact"
+        ),
+        items=choices.STRENGTHS,
+    )
     sharp_angle: FloatProperty(
         name="Sharp Angle",
         description=(
@@ -263,17 +246,19 @@ class Settings:
 
 
 # Which settings only quads that flow heed.
-_OF_FLOW = {"follow_shape", "adaptivity", "density", "mirror"}
+_OF_FLOW = {"follow_shape", "adaptivity", "density", "mirror", "guides", "guide_strength"}
 NAMES = tuple(Settings.__annotations__)
 # Settings that say how many faces an object gets.
 _OF_SIZE = {"size", "ratio", "edge_length"}
 # Settings that say what of an object is read.
 _OF_MESH = {"density", "marked_edges", "mirror_modifier", "use_modifiers"}
+# Settings that say what is read beside an object.
+_BESIDE = {"guides", "guide_strength"}
 # Settings that say what is written.
 _OF_RESULT = {"keep_original", "weights_limit"}
 # Settings that are one with another in the core.
 _IN_OTHERS = {"use_weld"}
-_APART = _OF_SIZE | _OF_MESH | _OF_RESULT | _IN_OTHERS
+_APART = _OF_SIZE | _OF_MESH | _BESIDE | _OF_RESULT | _IN_OTHERS
 # What is set by each value of `size`.
 _BY_SIZE = {"FACES": "faces", "RATIO": "ratio", "EDGE": "edge_length"}
 #: The settings beside the button, and those in the sections of the panel below it.
@@ -281,7 +266,7 @@ FIRST = ("kind", "size", "faces", "ratio", "edge_length")
 SECTIONS = {
     "Shape": ("follow_shape", "adaptivity", "sharp_angle"),
     "Symmetry": ("mirror", "mirror_modifier"),
-    "Guides and Density": ("marked_edges", "density"),
+    "Guides and Density": ("guides", "guide_strength", "marked_edges", "density"),
     "Keep": (
         *("borders", "fill_size", "handles", "seal_size", "solid", "solid_detail", "inner"),
         *("small_parts", "small_size"),
@@ -295,7 +280,8 @@ class OrbflowSettings(bpy.types.PropertyGroup, Settings):
     """The settings that the panel shows, saved with the scene."""
 
     # Without a step of its own, undo of a run would empty it.
-    density: _density(update=_push_undo)
+    density: named.density(update=named.push_undo)
+    guides: named.guides(update=named.push_undo)
     show_irregular: BoolProperty(
         name="Irregular Vertices",
         description=(
@@ -342,7 +328,8 @@ def for_core(source: Settings) -> dict[str, Any]:
 def is_of_use(source: Settings, name: str) -> bool:
     """Whether a setting changes anything with the others as they are."""
     if name in _OF_FLOW:
-        return source.kind == "QUADS" and source.primitive in {"AUTO", "FLOW"}
+        flows = source.kind == "QUADS" and source.primitive in {"AUTO", "FLOW"}
+        return flows and (name != "guide_strength" or bool(source.guides))
     if name == "mirror_modifier":
         return source.use_modifiers
     if name == "fill_size":
@@ -361,23 +348,11 @@ def is_shown(source: Settings, name: str) -> bool:
     return name not in _BY_SIZE.values() or name == _BY_SIZE[source.size]
 
 
-def set_density(target: "OrbflowSettings", name: str) -> None:
-    """Names the density within the undo step of an operator."""
-    _copying.append(True)
-    try:
-        target.density = name
-    finally:
-        _copying.clear()
-
-
 def copy(source: Settings, target: object) -> None:
     """Gives `target`, the properties of an operator or a scene, the settings of `source`."""
-    _copying.append(True)
-    try:
+    with named.unnoticed():
         for name in NAMES:
             setattr(target, name, getattr(source, name))
-    finally:
-        _copying.clear()
 
 
 def _value(value: str | float) -> str | float | None:

@@ -8,11 +8,13 @@ result, so that its numbers there are found by where every corner comes from.
 from dataclasses import dataclass
 from typing import Any
 
+import bpy
 import numpy as np
 import orbflow_native
 from numpy.typing import NDArray
 
-from . import words
+from . import attributes, words
+from .guides.strokes import Stroke
 from .mesh_arrays import MeshArrays
 
 Int = NDArray[np.int32]
@@ -20,6 +22,8 @@ _Reason = tuple[dict[str, Any], dict[str, Any]]
 _ELEMENTS = ("edges", "faces")
 # More rows than this would fill the sidebar: then one row stands for all of a kind.
 _MOST_ROWS = 6
+# Faces along a stroke are looked for at no more points than these: each takes a look at all faces.
+_MOST_POINTS = 200
 
 
 @dataclass(frozen=True)
@@ -101,6 +105,41 @@ def made(result: orbflow_native.Remeshed, told: list[str]) -> list[Complaint]:
     place = tuple(result.positions[corners].mean(0).tolist())
     exact = words.count(len(faces), "face") + " on what was closed for good"
     return [Complaint(", ".join(told), exact, Spot(np.zeros((0, 2), np.int32), faces, place))]
+
+
+def lost(
+    mesh: bpy.types.Mesh, strokes: tuple[Stroke, ...], outcomes: list[dict[str, Any]]
+) -> list[Complaint]:
+    """A row for every stroke that no edges of a mesh follow, or one for all where these are many.
+
+    Its spot is the faces that lie along it.
+    """
+    gone = [each for each in outcomes if each["outcome"] == "lost"]
+    rows = [gone] if len(gone) > _MOST_ROWS else [[each] for each in gone]
+    return [_lost(mesh, [strokes[each["guide"]] for each in row], row) for row in rows]
+
+
+def _lost(mesh: bpy.types.Mesh, strokes: list[Stroke], outcomes: list[dict[str, Any]]) -> Complaint:
+    points = np.concatenate([each.points for each in strokes])
+    some = points[:: -(-len(points) // _MOST_POINTS)]
+    middles = _middles(mesh)
+    squares = [((middles - point) ** 2).sum(axis=1) for point in some]
+    faces = np.unique([each.argmin() for each in squares]).astype(np.int32)
+    exact = words.first_of([each["text"] for each in outcomes])
+    told = f"guide {strokes[0].name} is lost"
+    if len(strokes) > 1:
+        told = f"{len(strokes):,} guides are lost"
+    elif off := words.off_guides(outcomes):
+        told += f": {off} off"
+    return Complaint(told, exact, Spot(np.zeros((0, 2), np.int32), faces, tuple(some[0])))
+
+
+def _middles(mesh: bpy.types.Mesh) -> NDArray[np.floating]:
+    """The middles of all faces, (F, 3)."""
+    starts = attributes.loop_starts(mesh)
+    corners = attributes.positions(mesh)[attributes.corner_verts(mesh)]
+    sizes = np.diff(np.append(starts, len(corners)))
+    return np.add.reduceat(corners, starts, axis=0) / sizes[:, None]
 
 
 def _complaint(group: list[_Reason], numbers: Numbers, n_parts: int) -> Complaint:

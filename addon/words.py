@@ -48,6 +48,8 @@ _OF_ONE = {
 _OUTCOMES = {"kept": "left as they were", "dropped": "left out"}
 # What whole bodies, heads and props have that artists modelled: at least, at most.
 _OF_ARTISTS = {"loop_edges_pct": (33.0, math.inf), "spiral_pct": (0.0, 1.6)}
+# What becomes of the artist's lines.
+_HEEDED = ("laid", "followed", "lost")
 # Of more texts than these the rest is counted.
 _MOST_TEXTS = 3
 
@@ -184,6 +186,8 @@ def exceptions(report: dict[str, Any]) -> list[str]:
     told += [_cleaned(report), _welded(report), _parted(report), _shown(report)]
     told += [_solid(report["solid"])] if report.get("solid") else []
     told += filled(report) + _modifiers(report)
+    told += [each for each in lost_guides(report) if each not in faults(report)]
+    told += ["nothing that is shown of the guides lies where it is"] * report["is_unguided"]
     return [each for each in told if each]
 
 
@@ -219,6 +223,36 @@ def filled(report: dict[str, Any]) -> list[str]:
     n_filled, n_sealed = (sum(each[name] for each in opened) for name in ("n_filled", "n_sealed"))
     told = [f"{count(n_filled, 'border')} filled"] if n_filled else []
     return told + ([f"{count(n_sealed, 'handle')} sealed"] if n_sealed else [])
+
+
+def lost_guides(report: dict[str, Any]) -> list[str]:
+    """Along which of the artist's lines no edges lie."""
+    lost = [each["name"] for each in report["guides"] if each["outcome"] == "lost"]
+    if not lost:
+        return []
+    n, n_all = len(lost), count(len(report["guides"]), "guide")
+    return [f"{n:,} of {n_all} {'is' if n == 1 else 'are'} lost: {first_of(lost)}"]
+
+
+def guides(report: dict[str, Any]) -> list[tuple[str, str]]:
+    """How the artist's lines were heeded, and how far edges are off them at most."""
+    given = report["guides"]
+    counts = [(sum(each["outcome"] == name for each in given), name) for name in _HEEDED]
+    if not given:
+        return []
+    rows = [("Guides", ", ".join(f"{n:,} {name}" for n, name in counts if n))]
+    off = off_guides([each for each in given if each["outcome"] != "lost"])
+    return rows + ([("Off guides by", off)] if off else [])
+
+
+def off_guides(given: list[dict[str, Any]]) -> str:
+    """How far edges are off some of the artist's lines, of the worst; empty where nobody knows."""
+    off = [
+        form.format(max(figures))
+        for name, form in (("distance", "{:.2f} edges"), ("angle", "{:.0f}°"))
+        if (figures := [each[name] for each in given if each[name] is not None])
+    ]
+    return ", ".join(off)
 
 
 def _solid(solid: dict[str, Any]) -> str:

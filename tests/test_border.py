@@ -68,6 +68,8 @@ def test_panel_and_operator_have_the_same_settings(operator: Any, scene_settings
         "follow_shape",
         "adaptivity",
         "density",
+        "guides",
+        "guide_strength",
         "sharp_angle",
         "marked_edges",
         "mirror",

@@ -204,13 +204,15 @@ def test_settings_that_change_nothing_are_grey(open_fixture: Open) -> None:
         drawn = panel_of(first).drawn
         return {name for name, row in drawn if not row.active} - {"show_crosses", "orbflow_before"}
 
-    assert grey() == {"fill_size", "seal_size", "solid_detail"}
+    assert grey() == {"fill_size", "seal_size", "solid_detail", "guide_strength"}
+    settings.guides = "Lines"
     settings.borders, settings.handles, settings.solid = "FILL", "SEAL", True
     assert grey() == {"inner"}
     settings.solid = False
     assert grey() == {"solid_detail"}
     settings.kind = "TRIANGLES"
-    assert grey() == {"follow_shape", "adaptivity", "density", "mirror", "solid_detail"}
+    of_flow = {"follow_shape", "adaptivity", "density", "mirror", "guides", "guide_strength"}
+    assert grey() == of_flow | {"solid_detail"}
     settings.kind = "QUADS"
     settings.use_weld = settings.use_modifiers = False
     assert grey() == {"weld", "mirror_modifier", "solid_detail"}

@@ -5,7 +5,9 @@ They are found on the mesh as the core welds it: where a seam is split, as impor
 two borders that lie on each other are one edge.
 """
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import partial
 
 import bpy
 import mathutils
@@ -111,15 +113,40 @@ def of_layers(mesh: bpy.types.Mesh, layers: list[Layer]) -> tuple[list[Int], lis
     return [edges for _, edges in sets.values()], which
 
 
-def of_islands(mesh: bpy.types.Mesh) -> Int:
-    """The borders of the islands of the active UV map, (N, 2)."""
-    active = mesh.uv_layers.active
-    if active is None or not len(mesh.loops):
+def of_borders(mesh: bpy.types.Mesh, names: Iterable[str]) -> Int:
+    """The borders of some names of `BORDERS`, each edge once, (N, 2)."""
+    values = [each for name in names if (each := BORDERS[name](mesh)) is not None]
+    if not values or not len(mesh.loops):
         return np.empty((0, 2), np.int32)
-    coordinates = np.empty((len(mesh.loops), 2), np.float32)
-    mesh.attributes[active.name].data.foreach_get("vector", coordinates.ravel())
     seams = read(mesh)
-    return seams.pairs(seams.jumps(coordinates, _APART))
+    return seams.pairs(np.logical_or.reduce([seams.jumps(each, _APART) for each in values]))
+
+
+def _coordinates(mesh: bpy.types.Mesh) -> NDArray[np.float32] | None:
+    """The active UV map at every corner."""
+    active = mesh.uv_layers.active
+    if active is None:
+        return None
+    found = np.empty((len(mesh.loops), 2), np.float32)
+    mesh.attributes[active.name].data.foreach_get("vector", found.ravel())
+    return found
+
+
+def _of_faces(mesh: bpy.types.Mesh, name: str) -> Int | None:
+    """A whole number of every face at each of its corners."""
+    values = attributes.values(mesh, name, "FACE", "INT")
+    if values is None:
+        return None
+    sizes = np.diff(np.append(attributes.loop_starts(mesh), len(mesh.loops)))
+    return np.repeat(values, sizes)[:, None]
+
+
+#: What borders lie between: islands of the UV map, materials, face sets; by the names of marks.
+BORDERS: dict[str, Callable[[bpy.types.Mesh], NDArray | None]] = {
+    "UV": _coordinates,
+    "MATERIAL": partial(_of_faces, name="material_index"),
+    "FACE_SETS": partial(_of_faces, name=attributes.FACE_SETS),
+}
 
 
 def creases(mesh: bpy.types.Mesh) -> NDArray[np.bool_]:

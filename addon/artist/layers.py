@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..attributes import SEAMS
+from ..attributes import FACE_SETS, SEAMS
 
 # Of every type of attribute that can be carried: the property of its values, the type of an
 # array of them, and how many numbers a value has.
@@ -79,7 +79,7 @@ def is_lost(attribute: bpy.types.Attribute) -> bool:
 
 def _is_artists(attribute: bpy.types.Attribute) -> bool:
     name = attribute.name
-    return name in SEAMS or not (name.startswith(".") or name in _OWN)
+    return name in {*SEAMS, FACE_SETS} or not (name.startswith(".") or name in _OWN)
 
 
 def read(mesh: bpy.types.Mesh, domain: str) -> Iterator[Layer]:

@@ -3,7 +3,7 @@
 
 import bpy
 
-from .. import density, settings
+from .. import density, named, settings
 
 # Half as dense as it can be: there is room for more and for less.
 _AT_FIRST = 0.5
@@ -30,12 +30,18 @@ class OBJECT_OT_orbflow_paint_density(bpy.types.Operator):
         name = wanted.density or density.DEFAULT
         if thing.data.color_attributes.get(name) and name not in thing.vertex_groups:
             thing.data.attributes.active_color_name = name
-            settings.set_density(wanted, name)
+            _name(wanted, name)
             return bpy.ops.object.mode_set(mode="VERTEX_PAINT")
         group = thing.vertex_groups.get(name)
         if group is None:
             group = thing.vertex_groups.new(name=name)
             group.add(range(len(thing.data.vertices)), _AT_FIRST, "REPLACE")
         thing.vertex_groups.active = group
-        settings.set_density(wanted, name)
+        _name(wanted, name)
         return bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
+
+
+def _name(wanted: settings.OrbflowSettings, name: str) -> None:
+    """Names the density within the undo step of the operator."""
+    with named.unnoticed():
+        wanted.density = name

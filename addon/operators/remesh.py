@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The button: Object > Orbflow Remesh."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import bpy
@@ -13,6 +13,7 @@ from .. import (
     density,
     earlier,
     events,
+    guides,
     mesh_arrays,
     modifiers,
     originals,
@@ -24,6 +25,7 @@ from .. import (
     size,
     words,
 )
+from ..guides.strokes import Stroke
 from ..job import Done, Failed, Job, Outcome, Task, Todo, remesh, running
 from ..outcomes import Told
 from ..stand_in import StandIns, stand_ins
@@ -171,20 +173,35 @@ def _is_editable(thing: bpy.types.Object) -> bool:
 
 def _tasks(context: bpy.types.Context, wanted: settings.Settings) -> list[Todo]:
     context.view_layer.update()
+    things = [each for each in context.selected_objects if each.type == "MESH"]
+    named = wanted.guides if settings.is_of_use(wanted, "guides") else ""
+    try:
+        drawn = guides.read(context, named, wanted.guide_strength == "EXACT")
+    except guides.NoGuides as error:
+        return [Failed(each.name, str(error)) for each in things]
     with stand_ins(context) as copies:
-        things = [each for each in context.selected_objects if each.type == "MESH"]
-        failed, alike = _sort(things, copies, wanted)
-        return failed + [
-            _task(things, copies, stack, wanted) for (_, stack, *_), things in alike.items()
-        ]
+        failed, alike = _sort(things, copies, drawn, wanted)
+        return failed + [_task(each, copies, wanted) for each in alike]
+
+
+@dataclass(frozen=True)
+class _Alike:
+    """Objects that share a mesh, and all that one result does for."""
+
+    things: list[bpy.types.Object]
+    stack: modifiers.Stack
+    guides: tuple[Stroke, ...] | None
 
 
 def _sort(
-    things: list[bpy.types.Object], copies: StandIns, wanted: settings.Settings
-) -> tuple[list[Todo], dict[Any, list[bpy.types.Object]]]:
+    things: list[bpy.types.Object],
+    copies: StandIns,
+    drawn: list[Stroke] | None,
+    wanted: settings.Settings,
+) -> tuple[list[Todo], list[_Alike]]:
     """Which objects cannot be done; which of the others share a mesh that one result does for."""
     failed: list[Todo] = []
-    alike: dict[Any, list[bpy.types.Object]] = {}
+    alike: dict[Any, _Alike] = {}
     for thing in things:
         if reason := _why_left(thing):
             failed.append(Failed(thing.name, reason))
@@ -195,8 +212,10 @@ def _sort(
             failed.append(Failed(thing.name, str(error)))
             continue
         scale = (f"{x:.5g}" for x in thing.matrix_world.to_scale())
-        alike.setdefault((thing.data, stack, *scale), []).append(thing)
-    return failed, alike
+        own = guides.of(thing, drawn, len(things) == 1)
+        key = (thing.data, stack, *scale, *(each.key() for each in own or ()))
+        alike.setdefault(key, _Alike([], stack, own)).things.append(thing)
+    return failed, list(alike.values())
 
 
 def _why_left(thing: bpy.types.Object) -> str:
@@ -208,16 +227,11 @@ def _why_left(thing: bpy.types.Object) -> str:
     return ""
 
 
-def _task(
-    things: list[bpy.types.Object],
-    copies: StandIns,
-    stack: modifiers.Stack,
-    wanted: settings.Settings,
-) -> Todo:
-    thing, *others = things
+def _task(alike: _Alike, copies: StandIns, wanted: settings.Settings) -> Todo:
+    thing, *others = alike.things
     try:
-        seen = modifiers.seen(copies, thing, stack)
-        all_of = [seen.thing] + [each for each in things if each != seen.thing]
+        seen = modifiers.seen(copies, thing, alike.stack)
+        all_of = [seen.thing] + [each for each in alike.things if each != seen.thing]
         given = artist.read(all_of, wanted.weights_limit)
         wish = density.read(seen.thing, wanted.density, given.groups)
     except (modifiers.Refused, density.NoSuchName) as error:
@@ -227,7 +241,7 @@ def _task(
     scale = tuple(thing.matrix_world.to_scale())
     names = tuple(each.name for each in others)
     n_faces = size.n_faces(wanted, arrays, scale)
-    return Task(thing.name, arrays, scale, given, wish, names, n_faces, seen.applied)
+    return Task(thing.name, arrays, scale, given, wish, alike.guides, names, n_faces, seen.applied)
 
 
 def _replace(outcome: Done, keep_original: bool) -> dict[str, Any] | Failed:
@@ -258,6 +272,7 @@ def _replace(outcome: Done, keep_original: bool) -> dict[str, Any] | Failed:
     report = outcome.result.report | {"lost": given.lost if given else []}
     report["has_normals"] = bool(given and given.elements.normals)
     report |= modifiers.told(applied)
+    report |= guides.told(task.guides, report)
     runs.remember(thing, report, outcome.result.crosses)
     earlier.remember(thing, task.arrays)
     return report
