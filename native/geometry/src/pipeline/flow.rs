@@ -7,7 +7,7 @@ use super::attempt::Budget;
 use super::clock::Clock;
 use super::even::{For, Marked, even};
 use super::flowed::{FlowedPart, better};
-use super::open::Opening;
+use super::open::{Loose, Opening};
 use super::paired::told;
 use super::{Error, Settings, mirror};
 use crate::deform::Target;
@@ -36,6 +36,8 @@ pub struct Asked<'a> {
     pub axis: Option<usize>,
     /// What is real of a part that was closed, and where its borders lie.
     pub opening: Option<&'a Opening>,
+    /// Which of its borders need no lines.
+    pub loose: Loose,
 }
 
 impl Asked<'_> {
@@ -105,19 +107,20 @@ fn ground<'a>(
     if !lines.is_empty() {
         style.creases = flow::Creases::All;
     }
-    let borders = asked.opening.map_or(&[][..], |opening| &opening.lines);
+    let borders = asked.opening.map(|opening| opening.firm_lines(asked.loose));
+    let borders = borders.unwrap_or_default();
     let quads = For {
         n_quads: asked.n_quads,
         sizes: &style.sizes,
         seed: asked.settings.seed,
-        lines: if lines.is_empty() { borders } else { lines },
+        lines: if lines.is_empty() { &borders } else { lines },
         is_solid: !lines.is_empty(),
         opening: asked.opening,
     };
     let even = told(even(map, (target, &wanted), &quads, progress))?;
     Ok(even.map(|even| Ground {
         sphere: even.sphere.clone(),
-        surface: Surface::new(even, (asked.opening, target)),
+        surface: Surface::new(even, (asked.opening, target), (map, asked.loose)),
         target,
         wanted,
         asked,
