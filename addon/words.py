@@ -9,6 +9,7 @@ STEPS = {
     "starting": "starting",
     "clean": "checking the mesh",
     "solid": "making it solid",
+    "close": "closing holes",
     "decimate": "unfolding",
     "embed": "unfolding",
     "sphere": "mapping",

@@ -11,7 +11,7 @@ use super::mirror::{Plan, images};
 use super::place::{Placed, place};
 use super::search::{self, Quantised};
 use crate::measure::Seam;
-use crate::mesh::VertexId;
+use crate::mesh::{HalfedgeId, VertexId};
 use crate::progress::Progress;
 use crate::sphere_map::SphereMap;
 
@@ -24,6 +24,8 @@ pub(super) struct Laid {
     pub seams: Vec<Seam>,
     /// The edges along what the guides say has to be met.
     pub firm: Vec<[VertexId; 2]>,
+    /// An edge of every line that has to be met and has no seam.
+    pub unmet: Vec<HalfedgeId>,
     /// Which lines of the plan have a seam.
     pub is_met: Vec<bool>,
     pub images: Option<Vec<VertexId>>,
@@ -47,6 +49,9 @@ pub(super) fn lay(
         Some(_) => Some(images(quads, &seams[..plan.plane.len()]).ok_or(Error::Uneven)?),
         None => None,
     };
+    let unmet = lines.iter().zip(&seams);
+    let unmet = unmet.filter(|(line, seam)| line.is_firm && seam.is_none());
+    let unmet = unmet.map(|(line, _)| line.halfedges[0]).collect();
     let is_met = seams.iter().map(Option::is_some).collect();
     let is_firm = |line: &Line| {
         guides
@@ -70,6 +75,7 @@ pub(super) fn lay(
         placed,
         seams,
         firm,
+        unmet,
         is_met,
         images,
     })

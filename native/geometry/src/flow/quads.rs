@@ -38,6 +38,8 @@ pub struct Flow {
     pub seams: Vec<Seam>,
     /// The edges of the quads along what had to be met.
     pub firm: Vec<[VertexId; 2]>,
+    /// An edge of the surface on every line of these that nobody drew and no edges lie along.
+    pub unmet: Vec<HalfedgeId>,
     /// The image of every vertex, where the quads are their own image in a plane.
     pub images: Option<Vec<VertexId>>,
     /// How they were found.
@@ -124,6 +126,7 @@ pub fn flow(
         images: laid.images,
         seams: laid.seams,
         firm: laid.firm,
+        unmet: borders(&laid.unmet, guides).collect(),
         report,
     })
 }
@@ -148,7 +151,7 @@ fn search(
     for plan in lined {
         let to = f64::midpoint(from, 1.0);
         match lay_plan(plan, &progress.part("", from, to)) {
-            Ok(laid) if dressed.are_met(mesh, plan, &laid.is_met) && unmet(plan, &laid) == 0 => {
+            Ok(laid) if dressed.are_met(mesh, plan, &laid.is_met) && laid.unmet.is_empty() => {
                 return Ok(laid);
             }
             // Fewer fixed points leave more ways out.
@@ -162,31 +165,22 @@ fn search(
     }
     let laid = lay_plan(last, &progress.part("", from, 1.0))?;
     // Of what was drawn as much is met as can be.
-    match unmet(last, &laid) - unmet_drawn(last, &laid, guides) {
-        0 => Ok(laid),
-        n_unmet => Err(Error::Creases {
+    match borders(&laid.unmet, guides).count() {
+        n_unmet if n_unmet > 0 && settings.creases == Creases::All => Err(Error::Creases {
             n_met: laid.is_met.len() - n_unmet,
             n_lines: laid.is_met.len(),
         }),
+        _ => Ok(laid),
     }
 }
 
-/// How many lines of a plan have to be met and are not.
-fn unmet(plan: &Plan, laid: &Laid) -> usize {
-    let lines = plan.lines().zip(&laid.is_met);
-    lines
-        .filter(|(line, is_met)| line.is_firm && !**is_met)
-        .count()
-}
-
-/// How many of them somebody drew.
-fn unmet_drawn(plan: &Plan, laid: &Laid, guides: Guides<'_>) -> usize {
-    let Some(drawn) = guides.drawn else {
-        return 0;
-    };
-    let lines = plan.lines().zip(&laid.is_met);
-    let of_drawn = lines.filter(|(line, _)| line.is_firm && drawn[line.halfedges[0]]);
-    of_drawn.filter(|(_, is_met)| !**is_met).count()
+/// Those of some lines, by an edge of each, that nobody drew.
+fn borders<'a>(
+    lines: &'a [HalfedgeId],
+    guides: Guides<'a>,
+) -> impl Iterator<Item = HalfedgeId> + use<'a> {
+    let is_drawn = move |h: HalfedgeId| guides.drawn.is_some_and(|drawn| drawn[h]);
+    lines.iter().copied().filter(move |&h| !is_drawn(h))
 }
 
 /// The grid of whole periods, with the ends of lines among its vertices.

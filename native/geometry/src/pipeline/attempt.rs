@@ -130,6 +130,16 @@ impl Budget {
         }
     }
 
+    /// The same with nothing spent, once so many attempts have been made.
+    pub fn again(self, n_attempts: usize) -> Self {
+        Self {
+            left: self.total,
+            n_attempts,
+            is_over: false,
+            ..self
+        }
+    }
+
     /// Takes the cost of an attempt if that leaves as much as is to be kept back.
     pub fn take(&mut self, attempt: Attempt, kept_back: usize) -> bool {
         let fits = attempt.cost() + kept_back <= self.left;

@@ -8,7 +8,7 @@ use super::attempt::Budget;
 use super::clock::Clock;
 use super::even::{For, Marked, even};
 use super::flowed::{FlowedPart, better};
-use super::open::Opening;
+use super::open::{Loose, Opening};
 use super::paired::told;
 use super::strokes::{Finer, OnPart};
 use super::{Error, Settings, mirror};
@@ -40,6 +40,8 @@ pub struct Asked<'a> {
     pub opening: Option<&'a Opening>,
     /// The strokes that somebody drew on it.
     pub strokes: OnPart<'a>,
+    /// Which of its borders need no lines.
+    pub loose: Loose,
 }
 
 impl Asked<'_> {
@@ -142,14 +144,15 @@ fn ground<'a>(
     if !lines.is_empty() {
         style.creases = flow::Creases::All;
     }
-    let borders = asked.opening.map_or(&[][..], |opening| &opening.lines);
+    let borders = asked.opening.map(|opening| opening.firm_lines(asked.loose));
+    let borders = borders.unwrap_or_default();
     let edge = (total_area(target.mesh()) / asked.n_quads.max(1) as f64).sqrt();
     let finer = Finer::new(asked.strokes, edge);
     let quads = For {
         n_quads: asked.n_quads,
         sizes: &style.sizes,
         seed: asked.settings.seed,
-        lines: if lines.is_empty() { borders } else { lines },
+        lines: if lines.is_empty() { &borders } else { lines },
         is_solid: !lines.is_empty(),
         opening: asked.opening,
         finer: &finer,
@@ -161,6 +164,7 @@ fn ground<'a>(
     let sphere = even.sphere.clone();
     let surface = Surface::new(even, (asked.opening, target));
     let surface = surface.drawn((asked, target, edge), progress)?;
+    let surface = surface.loosened((map, asked));
     let exact = surface.strokes.as_ref().map(|strokes| &strokes.exact);
     let exact = exact.map(|exact| Marked::new(surface.even.mesh(), exact));
     Ok(Ok(Ground {

@@ -28,6 +28,8 @@ pub enum Flowed {
         attempt: Attempt,
         /// How many settings were tried, those of a symmetric surface too.
         n_attempts: usize,
+        /// How many borders have rings of edges laid on them for want of lines, each side of a cut one.
+        n_rings: usize,
         /// How they were found.
         flow: flow::Report,
         /// What had to be repaired to lay them on the sphere.
@@ -44,11 +46,23 @@ pub enum Flowed {
     },
 }
 
+impl Flowed {
+    /// How many borders have rings for want of lines.
+    pub fn n_rings(&self) -> usize {
+        match self {
+            Self::Used { n_rings, .. } => *n_rings,
+            Self::Grid | Self::Refused { .. } => 0,
+        }
+    }
+}
+
 /// A part whose quads flow.
 pub struct FlowedPart {
     pub deformed: Deformed,
     /// How many quads the part of the surface that they miss would take, and how many are astray.
     pub n_missed: usize,
+    /// How many lines along borders got rings in their stead.
+    pub n_unmet: usize,
     /// The share of the marked edges that no edge of a quad lies along.
     pub lost: f64,
     pub sphere: sphere::Report,
@@ -68,7 +82,7 @@ impl FlowedPart {
         let n_crossing = report
             .n_crossing_left
             .saturating_sub(n_quads / QUADS_PER_CROSSING);
-        report.n_inverted + self.n_missed + n_knotted + n_crossing
+        report.n_inverted + self.n_missed + self.n_unmet + n_knotted + n_crossing
     }
 
     /// An error where strips were taken out and too much of the surface went with them.
@@ -92,6 +106,11 @@ impl FlowedPart {
             *n_attempts = n;
         }
         self
+    }
+
+    /// How many of its borders have rings for want of lines.
+    pub fn n_rings(&self) -> usize {
+        self.flowed.n_rings()
     }
 
     pub fn is_last_resort(&self) -> bool {

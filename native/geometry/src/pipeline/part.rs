@@ -13,7 +13,7 @@ use super::laid::{Instead, Laid};
 use super::mapless::Came;
 use super::marks::Marks;
 use super::mirror::{Faced, Plane, Role, face};
-use super::open::{Closing, Whole};
+use super::open::{Closing, Loose, Whole};
 use super::paired::{paired, told};
 use super::report::{Mirrored, PartReport};
 use super::settings::{Primitive, Settings};
@@ -88,7 +88,9 @@ impl PartJob<'_> {
             n_asked_faces: wanted.n_faces,
             area: measure::total_area(&part),
         };
-        let mut whole = Whole::new(part, (wanted.settings, wanted.marks), progress)?;
+        let stage = progress.part("close", 0.0, 0.02);
+        let whole = || Whole::new(part, (wanted.settings, wanted.marks), &stage);
+        let mut whole = clock.step("close", whole)?;
         let filling = std::mem::take(&mut whole.filling);
         let made = if whole.is_open() {
             if let Some(laid) = wanted.grid(&whole, progress)? {
@@ -119,9 +121,10 @@ impl Wanted<'_> {
         clock: &mut Clock,
         progress: &Progress<'_>,
     ) -> Result<PartResult, Error> {
-        let ready = self.ready(whole, progress)?;
+        let stage = progress.part("close", 0.02, 0.04);
+        let ready = self.ready(whole, clock, &stage)?;
         let (wanted, closing) = (ready.wanted, ready.closing);
-        let stage = progress.part("decimate", 0.0, 0.2);
+        let stage = progress.part("decimate", 0.04, 0.2);
         let reduce = || wanted.reduce((&ready.faced, closing.as_ref()), &stage);
         let reduction = clock.step("decimate", reduce)?;
         let stage = progress.part("embed", 0.2, 0.5);
@@ -158,11 +161,15 @@ impl Wanted<'_> {
     }
 
     /// Closes the part and makes it its own image, where it is to be.
-    fn ready(&self, whole: Whole, progress: &Progress<'_>) -> Result<Ready<'_>, Error> {
+    fn ready(
+        &self,
+        whole: Whole,
+        clock: &mut Clock,
+        progress: &Progress<'_>,
+    ) -> Result<Ready<'_>, Error> {
         let closing = if whole.is_open() {
-            let closing =
-                Closing::new(&whole, (self.marks, self.n_faces, self.has_tubes), progress)?;
-            Some(closing)
+            let asked = (self.marks, self.n_faces, self.has_tubes);
+            Some(clock.step("close", || Closing::new(&whole, asked, progress))?)
         } else {
             None
         };
@@ -218,6 +225,7 @@ impl Wanted<'_> {
             axis: ground.axis,
             opening: ground.opening.as_ref(),
             strokes: self.strokes,
+            loose: Loose::Nothing,
         };
         let part = progress.part("", 0.0, 0.9);
         match ways::flow_part(&start.1, &ground.target, wanted, clock, &part)? {

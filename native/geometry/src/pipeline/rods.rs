@@ -117,6 +117,7 @@ fn laid(
     let missed = n_missed(&deformed.mesh, target);
     let marks = (&deformed.mesh, &deformed.features[..]);
     Ok(FlowedPart {
+        n_unmet: 0,
         n_missed: missed + usize::from(far > FARTHEST * wide),
         lost: wanted.lost(marks, progress)?,
         deformed,
@@ -124,6 +125,7 @@ fn laid(
         flowed: Flowed::Used {
             attempt: Attempt::Rings,
             n_attempts: 0,
+            n_rings: 0,
             flow: report,
             cover: embed::CoverReport::default(),
         },

@@ -115,6 +115,7 @@ impl Thick {
         }
         Ok(FlowedPart {
             n_missed: n_missed(&deformed.mesh, target),
+            n_unmet: 0,
             deformed,
             ..part
         })

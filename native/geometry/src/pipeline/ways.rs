@@ -58,7 +58,21 @@ pub fn flow_part(
         from = 0.05;
     }
     let part = progress.part("", from, 1.0);
-    flowing((map, target), asked, &mut budget, clock, &part)
+    let mut own = budget;
+    let found = flowing((map, target), asked, &mut own, clock, &part)?;
+    if let (Err(_), Some(opening)) = (&found, asked.opening) {
+        for &loose in opening.ways_to_be_loose() {
+            // Lines are given up after one attempt, which mostly ends before it costs much.
+            budget = budget.again(own.n_attempts);
+            own = budget;
+            let loosened = Asked { loose, ..asked };
+            let loosened = along((map, target), (loosened, &[]), &mut own, clock, &part)?;
+            if loosened.is_ok() {
+                return Ok(loosened);
+            }
+        }
+    }
+    Ok(found)
 }
 
 /// Quads off a flat metric: along all edges of a solid, if it is one, else the usual way.

@@ -111,6 +111,7 @@ impl Surface {
             marked: with(&self.marked),
             strokes: Firm::new(mesh, &exact, border.as_ref()),
             turned: Some(drawn.along(Strength::Follow)),
+            regions: None,
             border,
             even,
             doubled: None,

@@ -4,12 +4,13 @@ use super::ground::{Ground, Refusal};
 use crate::deform::{self, Deformed, Flowing};
 use crate::elementary::powf;
 use crate::embed::{self, Covered};
-use crate::flow::{self, Flow};
+use crate::flow::{self, FirmEdges, Flow};
 use crate::mesh::VertexMap;
 use crate::mirror::Reflection;
 use crate::pipeline::attempt::Attempt;
 use crate::pipeline::clock::Clock;
 use crate::pipeline::flowed::{Flowed, FlowedPart};
+use crate::pipeline::open::{Lines, Opening, Regions};
 use crate::pipeline::paired::told;
 use crate::pipeline::probe::n_missed;
 use crate::pipeline::{Error, crosses, density, mirror};
@@ -22,15 +23,15 @@ struct Laid {
 }
 
 impl Ground<'_> {
-    /// Quads that flow by some settings, laid on the target.
+    /// Quads that flow by some settings, so many times as many as are asked for, laid on the target.
     pub fn attempt(
         &self,
-        attempt: Attempt,
+        (attempt, more): (Attempt, f64),
         clock: &mut Clock,
         progress: &Progress<'_>,
     ) -> Result<Result<FlowedPart, Refusal>, Cancelled> {
         let part = progress.part("flow", 0.0, 0.75);
-        let laid = match clock.step("flow", || self.laid(attempt, &part))? {
+        let laid = match clock.step("flow", || self.laid((attempt, more), &part))? {
             Ok(laid) => laid,
             Err(refusal) => return Ok(Err(refusal)),
         };
@@ -39,20 +40,25 @@ impl Ground<'_> {
         let fitted = fitted.map(|fitted| self.evened(fitted, &laid.flow));
         let opened = match (fitted, self.asked.opening) {
             (Ok(fitted), Some(opening)) => {
-                opening.reopened(&fitted, (&laid.flow.firm, self.target), progress)?
+                self.reopened(&fitted, (opening, &laid.flow), progress)?
             }
-            (fitted, _) => fitted,
+            (fitted, _) => fitted.map(|fitted| (fitted, 0)),
         };
         let is_over = false;
-        let deformed = match opened {
-            Ok(deformed) => deformed,
+        let (deformed, n_rings) = match opened {
+            Ok(opened) => opened,
             Err(reason) => return Ok(Err(Refusal { reason, is_over })),
         };
+        if n_rings > 0 && self.is_across() {
+            let reason = "rings at its borders are no images of each other".to_owned();
+            return Ok(Err(Refusal { reason, is_over }));
+        }
         let marks = (&deformed.mesh, &deformed.features[..]);
         let even = self.surface.even.mesh();
         Ok(Ok(FlowedPart {
             mirrored: self.surface.doubled.as_ref().map(|_| Ok(())),
             n_missed: n_missed(&deformed.mesh, self.asked.bare(self.target)),
+            n_unmet: self.n_unmet(n_rings),
             lost: self.wanted.lost(marks, progress)?,
             deformed,
             sphere: self.sphere.clone(),
@@ -60,23 +66,77 @@ impl Ground<'_> {
             flowed: Flowed::Used {
                 attempt,
                 n_attempts: 1,
+                n_rings,
                 flow: laid.flow.report,
                 cover: laid.covered.report,
             },
         }))
     }
 
+    /// Whether quads are to be images of others across a plane.
+    fn is_across(&self) -> bool {
+        let doubled = self.surface.doubled.as_ref();
+        doubled.is_some_and(|doubled| matches!(doubled.reflection(), Reflection::Across(_)))
+    }
+
+    /// Of so many rings, those that stand for lines that were to be met.
+    fn n_unmet(&self, n_rings: usize) -> usize {
+        let loose = self.surface.regions.as_ref();
+        n_rings.saturating_sub(loose.map_or(0, |regions| regions.loose.len()))
+    }
+
+    /// Quads of a closed part opened again, and how many borders have rings: those that lines miss,
+    /// and all where these cannot be opened.
+    fn reopened(
+        &self,
+        fitted: &Deformed,
+        (opening, flow): (&Opening, &Flow),
+        progress: &Progress<'_>,
+    ) -> Result<Result<(Deformed, usize), String>, Cancelled> {
+        let even = &self.surface.even;
+        let border = self.surface.border.as_ref();
+        let between = border.map(|firm| Regions::between(even.mesh(), firm));
+        let partly = between.as_ref().filter(|_| !flow.unmet.is_empty());
+        let regions = self.surface.regions.as_ref().or(partly);
+        let lines = Lines {
+            met: &flow.firm,
+            unmet: &flow.unmet,
+            surface: regions.map(|regions| (even, regions)),
+        };
+        let n_rings = flow.unmet.len() + regions.map_or(0, |regions| regions.loose.len());
+        let opened = opening.reopened(fitted, (lines, self.target), progress)?;
+        if opened.is_ok() || !self.is_bound_to_cuts() {
+            return Ok(opened.map(|opened| (opened, n_rings)));
+        }
+        let Some(all) = between.map(Regions::all_loose) else {
+            return Ok(opened.map(|opened| (opened, n_rings)));
+        };
+        let lines = Lines {
+            met: &[],
+            unmet: &[],
+            surface: Some((even, &all)),
+        };
+        let opened = opening.reopened(fitted, (lines, self.target), progress)?;
+        Ok(opened.map(|opened| (opened, all.loose.len())))
+    }
+
     /// Quads that flow by some settings, laid on the sphere.
     fn laid(
         &self,
-        attempt: Attempt,
+        (attempt, more): (Attempt, f64),
         progress: &Progress<'_>,
     ) -> Result<Result<Laid, Refusal>, Cancelled> {
+        let times = |n: usize| (more * n as f64).round() as usize;
         let mut settings = attempt.settings(&self.style);
+        settings.n_quads = times(settings.n_quads);
+        let mut firm = self.firm().cloned();
+        if let Some(real) = firm.as_mut().and_then(|firm| firm.real.as_mut()) {
+            real.n_quads = times(real.n_quads);
+        }
         let even = self.surface.even.mesh();
         let weights = |values| density::weights(values, self.target, even);
         settings.sizes.weights = self.finer(self.asked.density.map(weights));
-        let found = self.find(&settings, progress);
+        let found = self.find(&settings, firm.as_ref(), progress);
         let is_over = matches!(
             found,
             Err(Error::Flow(flow::Error::Count { n_quads, n_wanted })) if n_quads > n_wanted
@@ -99,15 +159,15 @@ impl Ground<'_> {
     }
 
     /// The flow of the surface, laid on its sphere.
-    fn find(&self, settings: &flow::Settings, progress: &Progress<'_>) -> Result<Laid, Error> {
+    fn find(
+        &self,
+        settings: &flow::Settings,
+        firm: Option<&FirmEdges>,
+        progress: &Progress<'_>,
+    ) -> Result<Laid, Error> {
         let surface = &self.surface;
         let part = progress.part("", 0.0, 0.95);
-        let mut flow = flow::flow(
-            &surface.even,
-            surface.guides(self.is_strict),
-            settings,
-            &part,
-        )?;
+        let mut flow = flow::flow(&surface.even, surface.guides(firm), settings, &part)?;
         if settings.may_exceed {
             flow = flow.thinned(self.asked.n_quads)?;
         }

@@ -8,8 +8,8 @@ use crate::pipeline::attempt::{Attempt, Budget};
 use crate::pipeline::clock::Clock;
 use crate::pipeline::even::{Even, Marked};
 use crate::pipeline::flow::Asked;
-use crate::pipeline::flowed::{FlowedPart, better};
-use crate::pipeline::open::Opening;
+use crate::pipeline::flowed::{Flowed, FlowedPart, better};
+use crate::pipeline::open::{Loose, Opening, Regions};
 use crate::pipeline::rods;
 use crate::pipeline::strokes::Finer;
 use crate::progress::{Cancelled, Progress};
@@ -18,6 +18,9 @@ use crate::sphere_map::SphereMap;
 
 /// Of the marked edges this share may be lost before other settings are tried: short ones are.
 const MOST_LOST: f64 = 0.1;
+
+/// The share that the count of quads with rings may be off before they are made again.
+const NEAR_COUNT: f64 = 0.015;
 
 /// An even surface and what its quads are fitted to.
 pub struct Ground<'a> {
@@ -47,6 +50,8 @@ pub struct Surface {
     pub strokes: Option<Firm>,
     /// Those along strokes that the field alone turns to.
     pub turned: Option<HalfedgeMap<bool>>,
+    /// Its pieces, where caps are to get rings whatever lines are met.
+    pub regions: Option<Regions>,
     /// Whose image is whose, where the surface is its own image.
     pub doubled: Option<Doubled>,
 }
@@ -71,6 +76,7 @@ impl Surface {
     pub fn new(even: Even, (opening, target): (Option<&Opening>, &Target)) -> Self {
         let border = opening.zip(even.border);
         Self {
+            regions: None,
             border: border.map(|(opening, is_on)| opening.firm(even.map.mesh(), is_on, target)),
             even: even.map,
             lines: even.lines,
@@ -100,19 +106,25 @@ impl Surface {
             turned: self.turned.as_ref().map(carried),
             border,
             even,
+            regions: None,
             doubled: Some(doubled),
         }
     }
 
-    /// What quads on it have to heed, strokes too where these have to be met.
-    pub fn guides(&self, is_strict: bool) -> flow::Guides<'_> {
-        let strokes = self.strokes.as_ref().filter(|_| is_strict);
+    /// The same with the pieces of a part some borders of which need no lines.
+    #[must_use]
+    pub fn loosened(mut self, (map, asked): (&SphereMap, Asked<'_>)) -> Self {
+        let opening = asked.opening.filter(|_| asked.loose != Loose::Nothing);
+        self.regions = opening.map(|opening| opening.regions(map, &self.even, asked.loose));
+        self
+    }
+
+    /// What quads on it have to heed, with lines that have to be met.
+    pub fn guides<'a>(&'a self, firm: Option<&'a FirmEdges>) -> flow::Guides<'a> {
         flow::Guides {
             lines: &self.lines,
             marked: &self.marked,
-            firm: strokes
-                .map(|strokes| &strokes.edges)
-                .or(self.border.as_ref()),
+            firm,
             turned: self.turned.as_ref(),
             drawn: self.strokes.as_ref().map(|strokes| &strokes.exact),
             mirror: self.doubled.as_ref(),
@@ -137,7 +149,7 @@ impl Ground<'_> {
                 continue;
             }
             let to = from + 0.6 * (1.0 - from);
-            let found = self.attempt(attempt, clock, &progress.part("", from, to))?;
+            let found = self.attempt((attempt, 1.0), clock, &progress.part("", from, to))?;
             from = to;
             budget.is_over |= matches!(found, Err(Refusal { is_over: true, .. }));
             let found = found.map_err(|refusal| refusal.reason);
@@ -165,13 +177,51 @@ impl Ground<'_> {
             if is_usual && is_failing && may_ring {
                 best = better(best, self.rings(clock, &progress.part("", from, from))?);
             }
+            // Lines may go where rings can be.
+            if best.is_err() && self.is_bound_to_cuts() {
+                break;
+            }
             let is_done =
                 |best: &FlowedPart| best.n_failed() == 0 && (best.lost <= MOST_LOST || !is_usual);
             if best.as_ref().is_ok_and(is_done) {
                 break;
             }
         }
-        Ok(best)
+        match best {
+            Ok(best) => Ok(Ok(self.counted(best, budget, clock, progress)?)),
+            best => Ok(best),
+        }
+    }
+
+    /// Quads with rings at borders, made again where their number is off: a ring is no line of a
+    /// metric, and how many quads go inside it is not known before.
+    fn counted(
+        &self,
+        best: FlowedPart,
+        budget: &mut Budget,
+        clock: &mut Clock,
+        progress: &Progress<'_>,
+    ) -> Result<FlowedPart, Cancelled> {
+        let (Flowed::Used { attempt, .. }, Some(opening)) = (&best.flowed, self.asked.opening)
+        else {
+            return Ok(best);
+        };
+        let off = |n: usize| (opening.n_asked as f64 / n.max(1) as f64 - 1.0).abs();
+        let n = best.deformed.mesh.n_faces();
+        if best.n_rings() == 0 || off(n) <= NEAR_COUNT || !budget.take(*attempt, 0) {
+            return Ok(best);
+        }
+        let more = opening.n_asked as f64 / n as f64;
+        let found = self.attempt((*attempt, more), clock, progress)?;
+        Ok(match found {
+            Ok(found)
+                if found.n_failed() <= best.n_failed()
+                    && off(found.deformed.mesh.n_faces()) < off(n) =>
+            {
+                found
+            }
+            _ => best,
+        })
     }
 
     /// Whether an attempt may be better than the best so far.
@@ -188,7 +238,7 @@ impl Ground<'_> {
         // Without strips nothing is its own image.
         let is_flowing = best.as_ref().is_ok_and(|best| !best.is_last_resort());
         // Nor do lines stay that have to be met.
-        let is_bound = self.surface.doubled.is_some() || self.has_firm();
+        let is_bound = self.surface.doubled.is_some() || self.has_firm_lines();
         if attempt.is_last_resort() && (is_flowing || is_bound) {
             return false;
         }
@@ -207,6 +257,26 @@ impl Ground<'_> {
         rods::rings(&self.surface.even, ground, self.asked, (clock, progress))
     }
 
+    /// The edges that have to be met: along borders, and along strokes unless these may be lost.
+    pub fn firm(&self) -> Option<&FirmEdges> {
+        let strokes = self.surface.strokes.as_ref().filter(|_| self.is_strict);
+        strokes
+            .map(|strokes| &strokes.edges)
+            .or(self.surface.border.as_ref())
+    }
+
+    /// Whether there are any such edges.
+    fn has_firm_lines(&self) -> bool {
+        self.firm()
+            .is_some_and(|firm| firm.is_on.iter().any(|&is_on| is_on))
+    }
+
+    /// Whether lines that have to be met may be given up later.
+    pub fn is_bound_to_cuts(&self) -> bool {
+        let opening = self.asked.opening;
+        self.asked.loose == Loose::Nothing && opening.is_some_and(Opening::can_be_loose)
+    }
+
     /// What of the budget an attempt leaves for what comes when no more settings are tried here.
     fn kept_back(
         &self,
@@ -221,7 +291,7 @@ impl Ground<'_> {
         match best {
             Ok(best) => usize::from(is_symmetric && best.n_missed > 0),
             // Strips are not taken out of quads with borders.
-            Err(_) if self.has_firm() => usize::from(is_symmetric),
+            Err(_) if self.has_firm_lines() => usize::from(is_symmetric),
             Err(_) => budget.kept_back(is_symmetric),
         }
     }

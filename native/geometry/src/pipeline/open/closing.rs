@@ -180,6 +180,9 @@ impl Closing {
             loops.corners(mesh, edge)
         };
         corners.retain(|&corner| !is_cut(corner));
+        let has_tubes = self.tubes.everywhere;
+        let borders = loops.closed_lines(mesh);
+        let borders = borders.filter(|line| !is_cut(line.point(0.0))).collect();
         let between = small.loops.lines(&small.mesh, (&corners, edge));
         let corners = between.iter().filter_map(|line| {
             let along = &line.line.vertices;
@@ -199,6 +202,8 @@ impl Closing {
             folds: Marked::new(mesh, &folds(&self.closed)),
             bare: Target::new(self.real(), progress)?,
             cuts: self.cuts,
+            borders,
+            has_tubes,
             punctures: self.punctures,
             wanted: self.wanted,
             n_asked,

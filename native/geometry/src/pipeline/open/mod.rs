@@ -18,6 +18,8 @@
 //! | `hold` | where edges of primitives are held |
 //! | `reopen` | which quads are kept |
 //! | `puncture` | how short borders are opened |
+//! | `rings` | how borders are opened along which no line of edges lies |
+//! | `level` | how the two borders of a cut get as many edges |
 //! | `weld` | how cut handles are joined again |
 //! | `mend` | how inverted quads are opened in the end |
 
@@ -25,10 +27,12 @@ mod closing;
 mod filling;
 mod firm;
 mod hold;
+mod level;
 mod loops;
 mod mend;
 mod puncture;
 mod reopen;
+mod rings;
 mod sheet;
 mod weld;
 mod whole;
@@ -41,6 +45,8 @@ use crate::measure::{FeatureLine, Polyline, Topology};
 use crate::mesh::{FaceMap, HalfedgeMap, TriangleMesh, VertexId, VertexMap};
 pub use closing::{Closing, Small};
 use puncture::Puncture;
+pub use reopen::Lines;
+pub use rings::{Loose, Regions};
 pub use whole::Whole;
 
 /// Places nearer to each other than this share of the diagonal are one.
@@ -60,12 +66,16 @@ pub struct Opening {
     folds: Marked,
     /// Where handles were cut.
     cuts: Vec<Polyline>,
+    /// The other borders that stay open while quads are made.
+    borders: Vec<Polyline>,
+    /// Whether all caps lie at the end of tubes.
+    has_tubes: bool,
     /// The borders that are made once there are quads.
     punctures: Vec<Puncture>,
     /// The shape that is to come out.
     wanted: Topology,
     /// How many quads are wanted on what is real.
-    n_asked: usize,
+    pub n_asked: usize,
     /// The corners of the borders.
     corners: Vec<Corner>,
     /// Which faces of the target are real.

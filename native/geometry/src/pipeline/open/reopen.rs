@@ -4,13 +4,32 @@ use std::collections::HashSet;
 
 use glam::DVec3;
 
-use super::Opening;
-use crate::deform::{Deformed, Target};
+use super::weld::loops;
+use super::{Opening, Regions, SAME};
+use crate::deform::{Deformed, Target, settle};
 use crate::groups::Groups;
-use crate::measure::{PolygonEdges, area_vector, topology};
-use crate::mesh::{FaceMap, HalfedgeMap, Id, PolygonMesh, TriangleMesh, VertexId};
+use crate::measure::{PolygonEdges, Polyline, area_vector, topology};
+use crate::mesh::{FaceMap, HalfedgeId, HalfedgeMap, Id, PolygonMesh, TriangleMesh, VertexId};
+use crate::nearest::Bvh;
 use crate::progress::{Cancelled, Progress};
 use crate::sphere_map::SphereMap;
+
+/// Quality up to which quads round rings are mended.
+const ENOUGH: f64 = 0.5;
+
+/// Of so many vertices of a loop it is asked how far they are from a border.
+const N_ASKED: usize = 12;
+
+/// What quads lie along.
+#[derive(Clone, Copy)]
+pub struct Lines<'a> {
+    /// Their edges along borders.
+    pub met: &'a [[VertexId; 2]],
+    /// Edges of the surface that quads were made on, on borders along which none lie.
+    pub unmet: &'a [HalfedgeId],
+    /// That surface and its pieces, where borders are to get rings.
+    pub surface: Option<(&'a SphereMap, &'a Regions)>,
+}
 
 impl Opening {
     /// The faces on what is real, those between some edges together; or why that is not the part.
@@ -23,11 +42,23 @@ impl Opening {
     pub fn reopened(
         &self,
         deformed: &Deformed,
-        (border, target): (&[[VertexId; 2]], &Target),
+        (lines, target): (Lines<'_>, &Target),
         progress: &Progress<'_>,
     ) -> Result<Result<Deformed, String>, Cancelled> {
         let mesh = &deformed.mesh;
-        let (patches, n_patches) = patches(mesh, border, progress)?;
+        let (patches, n_patches) = patches(mesh, lines.met, progress)?;
+        if let Some(surface) = lines.surface {
+            let ringed = match self.ringed(deformed, surface, (&patches, lines.unmet)) {
+                Ok(ringed) => ringed,
+                Err(reason) => return Ok(Err(reason)),
+            };
+            let moved = deformed.clone().moved(ringed.positions);
+            let opened = self.kept(&moved, &ringed.is_kept, progress)?;
+            return Ok(match opened {
+                Ok(opened) => Ok(self.settled(opened, progress)?),
+                refused => refused,
+            });
+        }
         let mut votes = vec![0.0; n_patches];
         for (face, &patch) in mesh.face_ids().zip(&patches) {
             let corners: Vec<DVec3> = mesh.face(face).iter().map(|&v| mesh.position(v)).collect();
@@ -35,6 +66,21 @@ impl Opening {
         }
         let is_kept: Vec<bool> = patches.iter().map(|&p| votes[p as usize] > 0.0).collect();
         self.kept(deformed, &is_kept, progress)
+    }
+
+    /// Quads round rings at better places of the part.
+    fn settled(&self, opened: Deformed, progress: &Progress<'_>) -> Result<Deformed, Cancelled> {
+        let mesh = &opened.mesh;
+        let mut is_fixed = PolygonEdges::new(mesh, progress)?.border_vertices(mesh.n_vertices());
+        for (is_fixed, &p) in is_fixed.iter_mut().zip(mesh.positions()) {
+            *is_fixed |= self.cuts.iter().any(|cut| cut.distance(p) < SAME);
+        }
+        for v in opened.features.iter().flatten() {
+            is_fixed[v.index()] = true;
+        }
+        let settled = settle(mesh, (&is_fixed, ENOUGH), &self.bare, progress)?;
+        let positions = settled.positions().to_vec();
+        Ok(opened.moved(positions))
     }
 
     /// Some faces alone, their borders moved onto those of the part; or why that is not the part.
@@ -126,19 +172,49 @@ impl Opening {
             return Ok(opened);
         }
         let mesh = &opened.mesh;
-        let edges = PolygonEdges::new(mesh, progress)?;
-        let is_border = edges.border_vertices(mesh.n_vertices());
-        let tree = self.edges.tree(progress)?;
-        let moved = mesh.positions().iter().zip(is_border);
-        let moved = moved.map(|(&p, is_border)| {
-            if is_border {
-                tree.closest(p).position
-            } else {
-                p
+        let loops = loops(mesh, progress)?;
+        let owners = self.owners(mesh, &loops);
+        let all = self.edges.tree(progress)?;
+        let mut moved = mesh.positions().to_vec();
+        for (border, owner) in loops.iter().zip(owners) {
+            let own = owner.map(|line| {
+                let pieces: Vec<_> = line.pieces().map(|[a, b]| [a, b, b]).collect();
+                Bvh::new(&pieces)
+            });
+            for &v in border {
+                let place = own.as_ref().unwrap_or(&all).closest(mesh.position(v));
+                moved[v.index()] = place.position;
             }
-        });
-        let moved = moved.collect();
+        }
         Ok(opened.moved(moved))
+    }
+
+    /// The border of the part that each loop of vertices belongs on: two at each cut, one at others,
+    /// those first that lie nearest; none for what is left over.
+    fn owners(&self, mesh: &PolygonMesh, loops: &[Vec<VertexId>]) -> Vec<Option<&Polyline>> {
+        let cuts = self.cuts.iter().map(|line| (line, 2));
+        let lines: Vec<(&Polyline, usize)> = cuts
+            .chain(self.borders.iter().map(|line| (line, 1)))
+            .collect();
+        let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
+        for (i, border) in loops.iter().enumerate() {
+            let some = border.iter().step_by(border.len().div_ceil(N_ASKED));
+            let some: Vec<DVec3> = some.map(|&v| mesh.position(v)).collect();
+            for (k, (line, _)) in lines.iter().enumerate() {
+                let off: f64 = some.iter().map(|&p| line.distance(p)).sum();
+                pairs.push((off / some.len() as f64, i, k));
+            }
+        }
+        pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut n_free: Vec<usize> = lines.iter().map(|(_, n)| *n).collect();
+        let mut owners = vec![None; loops.len()];
+        for (_, i, k) in pairs {
+            if owners[i].is_none() && n_free[k] > 0 {
+                n_free[k] -= 1;
+                owners[i] = Some(lines[k].0);
+            }
+        }
+        owners
     }
 }
 
@@ -187,7 +263,7 @@ fn neighbours(
 }
 
 /// The faces of a closed part that are real: the first one, and so on across its borders.
-fn real_faces(mesh: &TriangleMesh, border: &HalfedgeMap<bool>) -> FaceMap<bool> {
+pub(super) fn real_faces(mesh: &TriangleMesh, border: &HalfedgeMap<bool>) -> FaceMap<bool> {
     let around = |face| {
         let first = mesh.halfedge(face);
         let all = [first, first.next(), first.prev()].into_iter();

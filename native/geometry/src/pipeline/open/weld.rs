@@ -20,6 +20,7 @@ impl Opening {
         if self.cuts.is_empty() {
             return Ok(Ok(opened));
         }
+        let opened = self.leveled(opened, progress)?;
         let loops = loops(&opened.mesh, progress)?;
         let twins: Option<Vec<_>> = self
             .cuts
@@ -37,7 +38,7 @@ impl Opening {
 }
 
 /// The two loops along a cut, side by side: the faces are on the left of the first.
-fn two_along(
+pub(super) fn two_along(
     mesh: &PolygonMesh,
     loops: &[Vec<VertexId>],
     cut: &Polyline,
