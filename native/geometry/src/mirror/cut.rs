@@ -14,7 +14,7 @@ pub struct Side {
     pub faces: Vec<[VertexId; 3]>,
 }
 
-/// The triangles on the positive side of a closed mesh.
+/// The triangles on the positive side of a mesh.
 ///
 /// Edges across the plane are split where they meet it. A vertex nearer to that point than the
 /// share `snap` of the edge is moved there instead, so that no slivers come to be; one that would
@@ -62,9 +62,15 @@ impl Cut<'_> {
 
     fn snap(&mut self, v: VertexId, snap: f64) {
         let is_line = |h: &HalfedgeId| self.lines.is_some_and(|lines| lines[*h]);
-        let on_line = self.mesh.outgoing(v).any(|h| is_line(&h));
-        let ways = self.mesh.outgoing(v).filter(|h| !on_line || is_line(h));
-        let crossings = ways.filter_map(|h| self.crossing(v, self.mesh.target(h)));
+        // One that ends at a vertex of a border leaves it for no face.
+        let leaving = self.mesh.outgoing(v).map(|h| (h, self.mesh.target(h)));
+        let arriving = self.mesh.outgoing(v).map(HalfedgeId::prev);
+        let arriving = arriving.filter(|&h| self.mesh.twin(h).is_none());
+        let all = leaving.chain(arriving.map(|h| (h, self.mesh.origin(h))));
+        let all: Vec<(HalfedgeId, VertexId)> = all.collect();
+        let on_line = all.iter().any(|(h, _)| is_line(h));
+        let ways = all.iter().filter(|(h, _)| !on_line || is_line(h));
+        let crossings = ways.filter_map(|&(_, u)| self.crossing(v, u));
         let nearest = crossings.reduce(|a, b| if b.0 < a.0 { b } else { a });
         let Some((_, point)) = nearest.filter(|(share, _)| *share < snap) else {
             return;

@@ -64,7 +64,9 @@ fn checked_disc(
     }
 }
 
-fn largest_piece(side: &Side) -> Result<(TriangleMesh, Vec<[VertexId; 2]>), DoubleError> {
+pub(super) fn largest_piece(
+    side: &Side,
+) -> Result<(TriangleMesh, Vec<[VertexId; 2]>), DoubleError> {
     if side.faces.is_empty() {
         return Err(DoubleError::NotCut);
     }

@@ -7,6 +7,7 @@
 
 mod cut;
 mod glue;
+mod half;
 
 use std::collections::HashSet;
 
@@ -18,6 +19,7 @@ use crate::mesh::{
 };
 
 pub use glue::{double, double_along, double_sheet};
+pub use half::{Half, half};
 
 /// A mesh that is its own image in a plane, and which element is whose image.
 ///
@@ -67,6 +69,12 @@ pub enum DoubleError {
         /// Vertices − edges + faces.
         euler: i64,
     },
+    /// Too much of the positive side is not in its largest piece.
+    #[error("{pct:.0} % of its positive side hangs together only across the plane")]
+    Pieces {
+        /// How much of the area.
+        pct: f64,
+    },
     /// The piece or its double touches itself.
     #[error("its positive side touches itself in the plane: {0}")]
     Touches(#[from] TriangleMeshError),
@@ -111,13 +119,8 @@ impl Doubled {
             chosen.map(|h| [old.origin(h), old.target(h)]).collect();
         let mut carried = HalfedgeMap::filled(edges_of(&self.mesh), false);
         for h in self.mesh.halfedge_ids().take(edges_of(&self.mesh) / 2) {
-            let [a, b] =
-                [self.mesh.origin(h), self.mesh.target(h)].map(|v| self.sources[v.index()]);
-            let on_edge = |[p, q]: [VertexId; 2]| {
-                let lies = [a, b].iter().flatten().all(|&v| v == p || v == q);
-                lies && (chosen.contains(&[p, q]) || chosen.contains(&[q, p]))
-            };
-            let is_on = on_edge([a[0], b[0]]) || on_edge([a[0], b[1]]) || on_edge([a[1], b[0]]);
+            let ends = [self.mesh.origin(h), self.mesh.target(h)];
+            let is_on = lies_on_one(ends.map(|v| self.sources[v.index()]), &chosen);
             carried[h] = is_on;
             carried[self.image_of_halfedge(h)] = is_on;
         }
@@ -128,10 +131,8 @@ impl Doubled {
     /// and at their images.
     pub fn carried_values(&self, old: &TriangleMesh, values: &VertexMap<f64>) -> VertexMap<f64> {
         let mut carried = VertexMap::filled(self.mesh.n_vertices(), 0.0);
-        for (v, &[a, b]) in self.mesh.vertex_ids().zip(&self.sources) {
-            let away = |end| old.position(end).distance(self.mesh.position(v));
-            let share = away(a) / (away(a) + away(b)).max(f64::MIN_POSITIVE);
-            carried[v] = values[a] + (values[b] - values[a]) * share;
+        for (v, &source) in self.mesh.vertex_ids().zip(&self.sources) {
+            carried[v] = value_between(source, (old, values), self.mesh.position(v));
             carried[self.images[v]] = carried[v];
         }
         carried
@@ -160,6 +161,26 @@ impl Doubled {
         let twin = self.mesh.twin(image);
         twin.expect("the double of a disc is closed")
     }
+}
+
+/// The value at a place between two vertices.
+fn value_between(
+    [a, b]: [VertexId; 2],
+    (mesh, values): (&TriangleMesh, &VertexMap<f64>),
+    place: DVec3,
+) -> f64 {
+    let away = |end| mesh.position(end).distance(place);
+    let share = away(a) / (away(a) + away(b)).max(f64::MIN_POSITIVE);
+    values[a] + (values[b] - values[a]) * share
+}
+
+/// Whether two places, each between the ends of an edge or at one, lie on one of some edges.
+fn lies_on_one([a, b]: [[VertexId; 2]; 2], edges: &HashSet<[VertexId; 2]>) -> bool {
+    let on_edge = |[p, q]: [VertexId; 2]| {
+        let lies = [a, b].iter().flatten().all(|&v| v == p || v == q);
+        lies && (edges.contains(&[p, q]) || edges.contains(&[q, p]))
+    };
+    on_edge([a[0], b[0]]) || on_edge([a[0], b[1]]) || on_edge([a[1], b[0]])
 }
 
 fn edges_of(mesh: &TriangleMesh) -> usize {

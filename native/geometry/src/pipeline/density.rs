@@ -33,6 +33,11 @@ impl Density {
         Self(values)
     }
 
+    /// Values at places in the frame of work.
+    pub fn at(values: impl Iterator<Item = (DVec3, f64)>) -> Self {
+        Self(values.map(|(place, value)| (bits(place), value)).collect())
+    }
+
     /// The value at every vertex of a part; none where all are alike and ask for nothing.
     pub fn on(&self, part: &TriangleMesh) -> Option<VertexMap<f64>> {
         let known = |v| self.0.get(&bits(part.position(v))).copied();

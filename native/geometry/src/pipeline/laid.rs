@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::probe::Halves;
+use super::probe::farthest;
 use crate::deform::{Deformed, Target};
 use crate::sphere;
 
@@ -31,12 +31,8 @@ pub struct Laid {
 
 impl Laid {
     pub fn new(deformed: Deformed, sphere: Option<sphere::Report>, target: &Target) -> Self {
-        let halves = Halves::of(&deformed.mesh);
-        let gaps = halves.gaps(target);
-        let farthest = gaps.into_iter().fold(0.0, f64::max);
-        let quad_area = halves.area() / deformed.mesh.n_faces() as f64;
         Self {
-            off: (farthest / quad_area.max(f64::MIN_POSITIVE)).sqrt(),
+            off: farthest(&deformed.mesh, target),
             deformed,
             sphere,
         }

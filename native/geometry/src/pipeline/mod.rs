@@ -30,6 +30,7 @@ mod flow;
 mod flowed;
 mod frame;
 mod ground;
+mod halved;
 mod handles;
 mod inner;
 mod join;

@@ -27,9 +27,6 @@ use crate::progress::Progress;
 use crate::sphere_map::SphereMap;
 use crate::{decimate, embed, measure, sphere};
 
-/// A part with borders is not made its own image.
-const OPEN_REASON: &str = "it has borders and is not its own image in the plane";
-
 /// One part and what is to be made of it.
 pub struct PartJob<'a> {
     pub part: TriangleMesh,
@@ -93,19 +90,7 @@ impl PartJob<'_> {
         let mut whole = clock.step("close", whole)?;
         let filling = std::mem::take(&mut whole.filling);
         let made = if whole.is_open() {
-            if let Some(laid) = wanted.grid(&whole, progress)? {
-                let made = wanted.without_map((&whole, came), laid, Some(Flowed::Grid));
-                return Ok(PartResult { filling, ..made });
-            }
-            let reason = wanted.too_few().or_else(|| wanted.too_many_handles(&whole));
-            let reason = match reason {
-                Some(reason) => Err(reason),
-                None => told(wanted.run_open((&whole, came), clock, progress))?,
-            };
-            match reason {
-                Ok(made) => made,
-                Err(reason) => wanted.run_uncut((&whole, came), reason, clock, progress)?,
-            }
+            wanted.open((&whole, came), clock, progress)?
         } else {
             wanted.run((whole, came), clock, progress)?
         };
@@ -114,6 +99,27 @@ impl PartJob<'_> {
 }
 
 impl Wanted<'_> {
+    /// Makes the faces of a part with borders or handles in the way that suits it.
+    pub(super) fn in_one(
+        &self,
+        (whole, came): (&Whole, Came),
+        clock: &mut Clock,
+        progress: &Progress<'_>,
+    ) -> Result<PartResult, Error> {
+        if let Some(laid) = self.grid(whole, progress)? {
+            return Ok(self.without_map((whole, came), laid, Some(Flowed::Grid)));
+        }
+        let reason = self.too_few().or_else(|| self.too_many_handles(whole));
+        let made = match reason {
+            Some(reason) => Err(reason),
+            None => told(self.run_open((whole, came), clock, progress))?,
+        };
+        match made {
+            Ok(made) => Ok(made),
+            Err(reason) => self.run_uncut((whole, came), reason, clock, progress),
+        }
+    }
+
     /// Makes the faces of a part, closed first if it is open.
     pub(super) fn run(
         &self,
@@ -192,10 +198,10 @@ impl Wanted<'_> {
             marked = marked.iter().zip(&more).map(|(a, b)| *a || *b).collect();
         }
         let density = wanted.density.on(&part);
-        let role = wanted.role(closing.as_ref());
+        let (role, plane) = wanted.mirror;
         Ok(Ready {
             wanted,
-            faced: face((part, marked, density), (&role, wanted.mirror.1)),
+            faced: face((part, marked, density), (role, plane)),
             closing,
             opened,
         })
@@ -263,16 +269,6 @@ impl Wanted<'_> {
         Self {
             n_faces: (n_faces as usize).max(self.n_faces),
             ..self
-        }
-    }
-
-    /// What the part is to the plane of symmetry; one with borders has to be its own image already.
-    fn role(&self, closing: Option<&Closing>) -> Role {
-        match self.mirror {
-            (Role::Whole, Some(plane)) if closing.is_some() && !plane.was_symmetric => {
-                Role::Alone(Some(OPEN_REASON.to_owned()))
-            }
-            (role, _) => role.clone(),
         }
     }
 

@@ -31,6 +31,14 @@ pub fn n_missed(mesh: &PolygonMesh, target: &Target) -> usize {
     (n_far * mesh.n_faces()).div_ceil(gaps.len()) + n_astray
 }
 
+/// How far the surface is from faces at most, in their edges.
+pub fn farthest(mesh: &PolygonMesh, target: &Target) -> f64 {
+    let halves = Halves::of(mesh);
+    let farthest = halves.gaps(target).into_iter().fold(0.0, f64::max);
+    let face_area = halves.area() / mesh.n_faces() as f64;
+    (farthest / face_area.max(f64::MIN_POSITIVE)).sqrt()
+}
+
 /// Faces cut in triangles from their first corner, quads in halves.
 pub struct Halves(Vec<[DVec3; 3]>);
 

@@ -159,8 +159,11 @@ impl Made<'_> {
     }
 
     fn mirror(&self, settings: &Settings) -> Option<Fault> {
-        // Nobody has asked for a plane of a part with borders, which seldom can be its own image.
-        let is_asked = |part: &PartReport| settings.mirror != Mirror::Auto || part.opened.is_none();
+        // Nobody has asked for a plane of a part with borders that has too few quads to flow.
+        let flows = |part: &PartReport| matches!(part.flow, Some(Flowed::Used { .. }));
+        let is_asked = |part: &PartReport| {
+            settings.mirror != Mirror::Auto || part.opened.is_none() || flows(part)
+        };
         let reason = |part: &PartReport| match &part.mirrored {
             Some(Mirrored::Refused { reason }) if is_asked(part) => Some(reason.clone()),
             _ => None,

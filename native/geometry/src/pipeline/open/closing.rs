@@ -30,6 +30,8 @@ pub struct Closing {
     pub(super) closed: Closed,
     /// Where handles were cut.
     cuts: Vec<Polyline>,
+    /// Where the seam to its image ends at other borders: these are corners, whatever the turn.
+    seam_ends: Vec<DVec3>,
     /// The borders that are made once there are quads, for they are shorter than a few of them.
     punctures: Vec<Puncture>,
     /// The shape that is to come out.
@@ -68,7 +70,9 @@ impl Closing {
     /// # Errors
     /// A part that cannot be closed; when cancelled.
     pub fn new(
-        Whole { mesh, shape, .. }: &Whole,
+        Whole {
+            mesh, shape, seam, ..
+        }: &Whole,
         (marks, n_faces, has_tubes): (&Marks, usize, bool),
         progress: &Progress<'_>,
     ) -> Result<Self, Error> {
@@ -76,7 +80,10 @@ impl Closing {
         let cut = handles::cut(part, progress)?;
         let area = total_area(part);
         let edge = (area / n_faces.max(1) as f64).sqrt();
-        let limits = Limits::new(&cut, (area, edge));
+        let mut limits = Limits::new(&cut, (area, edge));
+        if let Some(seam) = seam {
+            limits.keep(seam.shortest_loop(&cut.mesh));
+        }
         let borders: Vec<Polyline> = Loops::all(&cut.mesh).closed_lines(&cut.mesh).collect();
         let punctures = borders
             .into_iter()
@@ -97,6 +104,7 @@ impl Closing {
         let closed = close::close(&cut.mesh, &settings, progress)?;
         Ok(Self {
             cuts,
+            seam_ends: seam.as_ref().map_or(Vec::new(), |seam| seam.ends.clone()),
             punctures,
             wanted: shape,
             pieces: marks_of_pieces((part, marks), (&cut.mesh, &cut.sides)),
@@ -175,9 +183,9 @@ impl Closing {
         let is_cut = |p: DVec3| self.cuts.iter().any(|cut| cut.distance(p) < SAME);
         let loops = Loops::new(&self.open, &on_border);
         let mut corners = if self.tubes.everywhere {
-            loops.calm_corners(mesh, edge)
+            loops.calm_corners(mesh, (edge, &self.seam_ends))
         } else {
-            loops.corners(mesh, edge)
+            loops.corners(mesh, (edge, &self.seam_ends))
         };
         corners.retain(|&corner| !is_cut(corner));
         let has_tubes = self.tubes.everywhere;
@@ -237,6 +245,11 @@ impl Limits {
             puncture: (puncture::LONGEST * edge).min(round),
             below: shortest * (1.0 - SAME),
         }
+    }
+
+    /// Keeps borders of some length open too.
+    fn keep(&mut self, length: f64) {
+        self.below = self.below.min(length * (1.0 - SAME));
     }
 
     /// Up to which length they are closed before quads are made.

@@ -51,18 +51,21 @@ impl Loops {
             .map(move |border| super::polyline(mesh, border))
     }
 
-    /// Where they have corners for quads of some edge length.
-    pub fn corners(&self, mesh: &TriangleMesh, edge: f64) -> Vec<DVec3> {
+    /// Where they have corners for quads of some edge length; so they have in any case at some places.
+    pub fn corners(&self, mesh: &TriangleMesh, (edge, places): (f64, &[DVec3])) -> Vec<DVec3> {
         let bends = self.0.iter().map(|border| Bends::new(mesh, border, edge));
         bends
-            .flat_map(|bends| bends.points_at(&bends.corners()))
+            .flat_map(|bends| bends.points_at(&bends.corners(places)))
             .collect()
     }
 
     /// The same without steps that are lower than a quad.
-    pub fn calm_corners(&self, mesh: &TriangleMesh, edge: f64) -> Vec<DVec3> {
+    pub fn calm_corners(&self, mesh: &TriangleMesh, (edge, places): (f64, &[DVec3])) -> Vec<DVec3> {
         let bends = self.0.iter().map(|border| Bends::new(mesh, border, edge));
-        let calm = |bends: Bends| bends.points_at(&bends.without_steps(&bends.corners(), edge));
+        let calm = |bends: Bends| {
+            let corners = bends.corners(places);
+            bends.points_at(&bends.without_steps(&corners, (edge, places)))
+        };
         bends.flat_map(calm).collect()
     }
 
@@ -202,13 +205,16 @@ impl Bends {
         before.cross(after)
     }
 
-    /// The points that turn most within reach, of those that turn by more than a corner does.
-    fn corners(&self) -> Vec<usize> {
+    /// The points that turn most within reach, of those that turn by more than a corner does, and those
+    /// at some places.
+    fn corners(&self, places: &[DVec3]) -> Vec<usize> {
         let n = self.points.len();
         let turns: Vec<f64> = (0..n).map(|i| self.turn(i)).collect();
         let mut order: Vec<usize> = (0..n).filter(|&i| turns[i] > CORNER).collect();
         order.sort_by(|&a, &b| turns[b].total_cmp(&turns[a]).then(a.cmp(&b)));
-        let mut taken: Vec<usize> = Vec::new();
+        let mut taken: Vec<usize> = (0..n)
+            .filter(|&i| places.contains(&self.points[i]))
+            .collect();
         for i in order {
             if taken.iter().all(|&j| self.apart(i, j) > self.reach) {
                 taken.push(i);
@@ -219,7 +225,7 @@ impl Bends {
     }
 
     /// Some corners but for those near each other that turn opposite ways.
-    fn without_steps(&self, corners: &[usize], edge: f64) -> Vec<usize> {
+    fn without_steps(&self, corners: &[usize], (edge, places): (f64, &[DVec3])) -> Vec<usize> {
         let n = corners.len();
         let is_step = |a: usize, b: usize| {
             let [one, other] = [corners[a], corners[b]];
@@ -227,6 +233,9 @@ impl Bends {
             a != b && is_near && self.axis(one).dot(self.axis(other)) < 0.0
         };
         let stays = |&a: &usize| {
+            if places.contains(&self.points[corners[a]]) {
+                return true;
+            }
             let beside = [(a + n - 1) % n, (a + 1) % n];
             !beside.into_iter().any(|b| is_step(a, b))
         };
@@ -269,7 +278,7 @@ mod tests {
         let mesh = grid(8);
         let border = HalfedgeMap::filled(3 * mesh.n_faces(), true);
         let loops = Loops::new(&mesh, &border);
-        let corners = loops.corners(&mesh, 0.1);
+        let corners = loops.corners(&mesh, (0.1, &[]));
         assert_eq!(corners.len(), 4);
         let lines = loops.lines(&mesh, (&corners, 0.1));
         assert_eq!(lines.len(), 4);
@@ -285,7 +294,7 @@ mod tests {
         let (half, _) = TriangleMesh::of_faces(ball.positions(), half.copied()).unwrap();
         let border = HalfedgeMap::filled(3 * half.n_faces(), true);
         let loops = Loops::new(&half, &border);
-        assert!(loops.corners(&half, 0.4).is_empty());
+        assert!(loops.corners(&half, (0.4, &[])).is_empty());
         let lines = loops.lines(&half, (&[], 0.4));
         assert!(
             lines
@@ -306,8 +315,8 @@ mod tests {
         };
         let stepped = mesh.with_positions(mesh.positions().iter().map(drawn).collect());
         let loops = Loops::all(&stepped);
-        let corners = |edge: f64| loops.corners(&stepped, edge * width).len();
-        let calm = |edge: f64| loops.calm_corners(&stepped, edge * width).len();
+        let corners = |edge: f64| loops.corners(&stepped, (edge * width, &[])).len();
+        let calm = |edge: f64| loops.calm_corners(&stepped, (edge * width, &[])).len();
         assert_eq!([corners(0.2), calm(0.2)], [6, 4]);
         assert_eq!([corners(0.1), calm(0.1)], [6, 6]);
     }

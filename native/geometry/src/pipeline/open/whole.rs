@@ -7,6 +7,7 @@ use crate::measure::{Topology, topology_of_triangles};
 use crate::mesh::{HalfedgeId, HalfedgeMap, TriangleMesh};
 use crate::pipeline::borders::Opened;
 use crate::pipeline::marks::Marks;
+use crate::pipeline::mirror::Seam;
 use crate::pipeline::{Error, Settings};
 use crate::progress::Progress;
 
@@ -22,6 +23,8 @@ pub struct Whole {
     pub told: Option<Opened>,
     /// The marked edges of the part that were split where handles were sealed, piece by piece.
     pub pieces: Marks,
+    /// Where it is to be joined to its image, if it is half of a part.
+    pub seam: Option<Seam>,
 }
 
 impl Whole {
@@ -42,6 +45,7 @@ impl Whole {
             filling: Vec::new(),
             told: None,
             pieces: Marks::default(),
+            seam: None,
         };
         if !whole.is_open() {
             return Ok(whole);
@@ -67,12 +71,25 @@ impl Whole {
         Ok(whole)
     }
 
+    /// Half of it, with its marked edges and the seam.
+    pub fn halved(&self, half: TriangleMesh, (pieces, seam): (Marks, Seam)) -> Self {
+        Self {
+            shape: topology_of_triangles(&half),
+            mesh: half,
+            filling: Vec::new(),
+            told: self.told,
+            pieces,
+            seam: Some(seam),
+        }
+    }
+
     /// Whether it has borders or handles.
     pub fn is_open(&self) -> bool {
         !self.shape.closed || self.has_handles()
     }
 
-    fn has_handles(&self) -> bool {
+    /// Whether it has handles.
+    pub fn has_handles(&self) -> bool {
         self.shape.genus != Some(0)
     }
 }
