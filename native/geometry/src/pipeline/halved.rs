@@ -11,14 +11,17 @@ use super::paired::told;
 use super::part::{PartResult, Wanted};
 use super::probe::farthest;
 use super::report::{Mirrored, PartReport};
-use crate::deform::Target;
+use super::rods::images;
+use crate::deform::{Target, is_inverted};
 use crate::measure;
+use crate::mesh::{Id, VertexId};
+use crate::mirror::mirrored;
 use crate::progress::Progress;
 
 /// A symmetric part may have one in so many faces more or less than asked for, and a few, before another
 /// is tried.
 const FACES_PER_OFF: usize = 33;
-const FEW_OFF: usize = 2;
+const FEW_OFF: usize = 4;
 
 /// A symmetric part may miss the surface by so many edges before another is tried.
 const NEAR: f64 = 1.0;
@@ -46,6 +49,7 @@ impl Wanted<'_> {
         let mut first = None;
         if self.is_capped(part.0, &progress.part("", 0.0, 0.0))? {
             let made = self.in_one(part, clock, &progress.part("", 0.0, 0.5))?;
+            let made = made.exact(plane.axis);
             if made.is_mirrored() && judge.is_good(&made) {
                 return Ok(made);
             }
@@ -161,6 +165,35 @@ impl PartResult {
 
     fn is_mirrored(&self) -> bool {
         self.report.mirrored == Some(Mirrored::Used)
+    }
+
+    /// The same with vertices that are each other's images to the last bit, which opening has moved;
+    /// where faces have no images any more it is none.
+    fn exact(mut self, axis: usize) -> Self {
+        if !self.is_mirrored() {
+            return self;
+        }
+        let Some(images) = images(&self.mesh, axis) else {
+            let reason = "what was opened is no longer its own image".to_owned();
+            self.report.mirrored = Some(Mirrored::Refused { reason });
+            return self;
+        };
+        let now = self.mesh.positions();
+        let place = |(v, image): (usize, &VertexId)| {
+            let [own, there] = [now[v], now[image.index()]];
+            let mut place = own;
+            if image.index() == v {
+                place[axis] = 0.0;
+            } else if (there[axis], image.index()) > (own[axis], v) {
+                place = mirrored(there, axis);
+            }
+            place
+        };
+        let places = images.iter().enumerate().map(place).collect();
+        self.mesh = self.mesh.with_positions(places);
+        let is_bad = |face: &&[VertexId]| is_inverted(&self.mesh, face);
+        self.report.deform.n_inverted = self.mesh.faces().filter(is_bad).count();
+        self
     }
 
     /// The same with the reason why it is not its own image.
