@@ -3,9 +3,9 @@
     python tests/benchmarks/guides.py PROGRAM [--half tuning|report] [--strength exact|follow]
 
 The rings are where a sphere round a landmark cuts the surface, as uneven as the triangles that they
-cross. For each it prints how far the closed chain of edges along it is from it, in mean edges of the
-result, at most and in the mean, and by how many degrees edges turn from it in the mean. Half of the
-rings is for choosing settings, the other for figures.
+cross. For each it prints how far the closed chain of edges along it is from it, in mean edges of
+the result, at most and in the mean, and by how many degrees edges turn from it in the mean. Half of
+the rings is for choosing settings, the other for figures.
 """
 
 import argparse
