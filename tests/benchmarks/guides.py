@@ -3,9 +3,9 @@
     python tests/benchmarks/guides.py PROGRAM [--half tuning|report] [--strength exact|follow]
 
 The rings are where a sphere round a landmark cuts the surface, as uneven as the triangles that they
-cross. For each it prints how far the closed chain of edges along it is from it, in mean edges of the
-result, at most and in the mean, and by how many degrees edges turn from it in the mean. Half of the
-rings is for choosing settings, the other for figures.
+cross. For each it prints how far the closed chain of edges along it is from it, in mean edges of
+the result, at most and in the mean, and by how many degrees edges turn from it in the mean. Half of
+the rings is for choosing settings, the other for figures.
 """
 
 import argparse
@@ -195,6 +195,19 @@ class Result:
         return float(angles.mean())
 
 
+def remesh(asked: argparse.Namespace, name: str, rings: dict[str, np.ndarray]) -> Result:
+    """What the program makes of a mesh along some rings."""
+    stem = f"{name.replace('/', '_')[:-4]}_{asked.strength}"
+    lines, out = asked.out / f"{stem}_rings.obj", asked.out / f"{stem}.obj"
+    write_rings(lines, rings, asked.strength)
+    command = [asked.program, "remesh", str(DATA / name), str(out), "--faces", str(asked.faces)]
+    if asked.strength != "none":
+        command += ["--guides", str(lines)]
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    print(name, run.stderr.strip() or "no warnings", flush=True)
+    return Result(*read(out))
+
+
 def main() -> None:
     """Runs the program on every mesh and prints a line for each ring."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -203,35 +216,27 @@ def main() -> None:
     parser.add_argument("--faces", type=int, default=3000)
     parser.add_argument("--strength", choices=["exact", "follow", "none"], default="exact")
     parser.add_argument("--out", type=Path, default=Path(tempfile.gettempdir()))
-    parser.add_argument("--only", default="")
+    parser.add_argument("--only", default="", help="meshes whose name has this in it")
+    parser.add_argument("--apart", action="store_true", help="a run for each ring")
     asked = parser.parse_args()
-    n_laid = n_all = 0
-    angles = []
+    laid, angles = [], []
     for name, parts in RINGS[asked.half].items():
         if asked.only not in name:
             continue
         points, faces = read(DATA / name)
-        places = landmarks(name, points)
-        corners = triangles(faces)
+        places, corners = landmarks(name, points), triangles(faces)
         rings = {p: ring(points, corners, places[p], "wrist" not in p) for p in parts}
-        stem = f"{name.replace('/', '_')[:-4]}_{asked.strength}"
-        lines, out = asked.out / f"{stem}_rings.obj", asked.out / f"{stem}.obj"
-        write_rings(lines, rings, asked.strength)
-        command = [asked.program, "remesh", str(DATA / name), str(out), "--faces", str(asked.faces)]
-        command += ["--report", str(out.with_suffix(".json"))]
-        if asked.strength != "none":
-            command += ["--guides", str(lines)]
-        run = subprocess.run(command, capture_output=True, text=True, check=False)
-        print(name, run.stderr.strip() or "no warnings")
-        result = Result(*read(out))
-        for part, loop in rings.items():
-            most, mean = result.chain(loop)
-            angle = result.angle(loop)
-            angles.append(angle)
-            n_all += 1
-            n_laid += most <= ON_IT
-            print(f"  {part:12} at most {most:5.2f}, mean {mean:5.3f} edges, {angle:5.1f} degrees")
-    print(f"{n_laid} of {n_all} within {ON_IT} edges, mean angle {np.mean(angles):.1f} degrees")
+        runs = [{part: loop} for part, loop in rings.items()] if asked.apart else [rings]
+        for some in runs:
+            result = remesh(asked, name, some)
+            for part, loop in some.items():
+                most, mean = result.chain(loop)
+                angles.append(result.angle(loop))
+                laid.append(most <= ON_IT)
+                told = f"at most {most:5.2f}, mean {mean:5.3f} edges, {angles[-1]:5.1f} degrees"
+                print(f"  {part:12} {told}", flush=True)
+    n_laid = sum(laid)
+    print(f"{n_laid} of {len(laid)} within {ON_IT} edges, mean angle {np.mean(angles):.1f} degrees")
 
 
 if __name__ == "__main__":

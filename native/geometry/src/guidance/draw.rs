@@ -4,7 +4,6 @@ use glam::DVec3;
 
 use super::splitting::{Splitting, next, prev};
 use super::{Strength, Stroke};
-use crate::measure::area_vector;
 use crate::mesh::{FaceId, HalfedgeId, HalfedgeMap, TriangleMesh, VertexId, VertexMap};
 
 /// An edge that is crossed nearer to its end than this share of it is not split: the end is moved
@@ -177,7 +176,7 @@ impl Canvas<'_> {
         let before = self.cut.position(v);
         let keeps = |&h: &u32| {
             let [a, b] = [next(h), prev(h)].map(|h| self.cut.position(self.cut.origin(h)));
-            let [now, then] = [before, place].map(|p| area_vector([p, a, b]));
+            let [now, then] = [before, place].map(|p| across([p, a, b]));
             let turned = now.dot(then) > LEAST_COSINE * now.length() * then.length();
             let longest = (a - b).length_squared().max((a - place).length_squared());
             turned
@@ -234,14 +233,14 @@ impl Canvas<'_> {
         let way = self.cut.position(to) - from;
         let normal = |&h: &u32| {
             let [a, b] = [next(h), prev(h)].map(|h| self.cut.position(self.cut.origin(h)));
-            area_vector([from, a, b])
+            across([from, a, b])
         };
         let up: DVec3 = around.iter().map(normal).sum();
-        let across = way.cross(up).normalize_or_zero();
+        let side = way.cross(up).normalize_or_zero();
         let exits = around.iter().filter_map(|&h| {
             let h = next(h);
             let [a, b] = [self.cut.origin(h), self.cut.target(h)].map(|v| self.cut.position(v));
-            let [off_a, off_b] = [a, b].map(|p| (p - from).dot(across));
+            let [off_a, off_b] = [a, b].map(|p| (p - from).dot(side));
             let share = off_a / (off_a - off_b);
             let place = a.lerp(b, share);
             let is_crossed = (0.0..=1.0).contains(&share) && (place - from).dot(way) > 0.0;
@@ -269,10 +268,15 @@ impl Canvas<'_> {
     }
 }
 
+/// A vector along the normal of a triangle, as long as its area.
+fn across([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a) * 0.5
+}
+
 /// The shares of a triangle's corners at a place in its plane; negative outside.
 fn shares([a, b, c]: [DVec3; 3], place: DVec3) -> [f64; 3] {
-    let normal = area_vector([a, b, c]);
+    let normal = across([a, b, c]);
     let whole = normal.length_squared().max(f64::MIN_POSITIVE);
-    let of = |p: DVec3, q: DVec3| area_vector([place, p, q]).dot(normal) / whole;
+    let of = |p: DVec3, q: DVec3| across([place, p, q]).dot(normal) / whole;
     [of(b, c), of(c, a), of(a, b)]
 }

@@ -84,19 +84,6 @@ pub fn along(
     let split = if ground.is_strict { 0.6 } else { 1.0 };
     let part = progress.part("", 0.15, split);
     let mut found = found((&mut ground, symmetry), budget, clock, &part)?;
-    if std::env::var("ORB_DEBUG").is_ok() {
-        match &found {
-            Ok(f) => eprintln!(
-                "strict {} lost {} failed {} missed {} {:?}",
-                ground.is_strict,
-                f.lost,
-                f.n_failed(),
-                f.n_missed,
-                f.deformed.report
-            ),
-            Err(e) => eprintln!("strict {} err {e}", ground.is_strict),
-        }
-    }
     if ground.is_strict && found.as_ref().map_or(true, |found| !found.is_sound()) {
         // Lines that need not be met leave more ways out.
         ground.is_strict = false;

@@ -153,23 +153,6 @@ impl Ground<'_> {
             from = to;
             budget.is_over |= matches!(found, Err(Refusal { is_over: true, .. }));
             let found = found.map_err(|refusal| refusal.reason);
-            if std::env::var("ORB_DEBUG").is_ok() {
-                match &found {
-                    Ok(f) => eprintln!(
-                        "  {attempt:?} lost {} failed {} missed {} inv {} cross {} {:?}",
-                        f.lost,
-                        f.n_failed(),
-                        f.n_missed,
-                        f.deformed.report.n_inverted,
-                        f.deformed.report.n_crossing_left,
-                        match &f.flowed {
-                            super::super::flowed::Flowed::Used { flow, .. } => flow.n_creases,
-                            _ => [0, 0],
-                        }
-                    ),
-                    Err(e) => eprintln!("  {attempt:?} err {e}"),
-                }
-            }
             best = better(best, found.and_then(FlowedPart::not_cut_off));
             let is_usual = attempt == Attempt::Usual;
             let is_failing = best.as_ref().map_or(true, |best| best.n_failed() > 0);

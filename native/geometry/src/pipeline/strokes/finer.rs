@@ -7,10 +7,11 @@ use super::OnPart;
 use crate::guidance::Strength;
 use crate::measure::Polyline;
 
-/// A ring is to have so many edges: of fewer than eight hardly any is met.
-const EDGES_ROUND: f64 = 20.0;
-/// Edges are to be shorter by this factor at most.
-const FINEST: f64 = 2.5;
+/// A ring is to have so many edges: of fewer than eight hardly any is met; at 20 sizes differ so much
+/// that no whole periods are found where a body has five rings.
+const EDGES_ROUND: f64 = 16.0;
+/// Edges are to be shorter by this factor at most; at 2.5 as with 20 edges.
+const FINEST: f64 = 2.0;
 /// Points of a ring are so far apart, in edges of a quad.
 const STEP: f64 = 0.5;
 
