@@ -49,6 +49,14 @@ impl Ground<'_> {
             Ok(opened) => opened,
             Err(reason) => return Ok(Err(Refusal { reason, is_over })),
         };
+        if self
+            .asked
+            .opening
+            .is_some_and(|opening| !opening.has_room(n_rings))
+        {
+            let reason = format!("{n_rings} rings at borders are too many for the quads");
+            return Ok(Err(Refusal { reason, is_over }));
+        }
         if n_rings > 0 && self.is_across() {
             let reason = "rings at its borders are no images of each other".to_owned();
             return Ok(Err(Refusal { reason, is_over }));
@@ -95,7 +103,7 @@ impl Ground<'_> {
     ) -> Result<Result<(Deformed, usize), String>, Cancelled> {
         let even = &self.surface.even;
         let border = self.surface.border.as_ref();
-        let between = border.map(|firm| Regions::between(even.mesh(), firm));
+        let between = border.map(|firm| Regions::between(even, firm));
         let partly = between.as_ref().filter(|_| !flow.unmet.is_empty());
         let regions = self.surface.regions.as_ref().or(partly);
         let lines = Lines {
