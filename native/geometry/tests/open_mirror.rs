@@ -36,7 +36,7 @@ fn grid([across, along]: [(u32, bool); 2], place: impl Fn(f64, f64) -> DVec3) ->
     let faces: Vec<[u32; 4]> = faces
         .map(|[i, j]| [id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)])
         .collect();
-    PolygonMesh::from_faces(positions.collect(), &faces).unwrap()
+    PolygonMesh::from_faces(positions.collect(), &faces).expect("a grid is a mesh")
 }
 
 /// A point of a circle, from the share of a round.
@@ -53,8 +53,9 @@ fn with_windows(
 ) -> PolygonMesh {
     let flat = common::mapped_cube(n, |p| p);
     let faces = flat.faces().iter().filter(|face| {
-        let middle = face.iter().map(|&v| flat.position(v)).sum::<DVec3>() / 3.0;
-        !is_window(middle)
+        // Of both halves of a square the same: it is cut otherwise than its image.
+        let [a, b, c] = face.map(|v| flat.position(v));
+        !is_window(a.min(b).min(c).midpoint(a.max(b).max(c)))
     });
     let mut names = vec![u32::MAX; flat.n_vertices()];
     let mut positions = Vec::new();
@@ -67,7 +68,7 @@ fn with_windows(
         *name
     };
     let faces: Vec<[u32; 3]> = faces.map(|face| face.map(&mut name)).collect();
-    PolygonMesh::from_faces(positions, &faces).unwrap()
+    PolygonMesh::from_faces(positions, &faces).expect("faces of a mesh")
 }
 
 /// Holds that a result is its own image vertex by vertex and face by face, with edges in the plane.
@@ -87,7 +88,9 @@ fn assert_symmetric(mesh: &PolygonMesh, axis: usize, what: &str) {
     };
     let key = |face: &mut dyn Iterator<Item = VertexId>| {
         let mut key: Vec<VertexId> = face.collect();
-        let least = (0..key.len()).min_by_key(|&i| key[i]).unwrap();
+        let least = (0..key.len())
+            .min_by_key(|&i| key[i])
+            .expect("a face has corners");
         key.rotate_left(least);
         key
     };
@@ -113,7 +116,7 @@ fn assert_done(mesh: &PolygonMesh, (mirror, faces): (Mirror, usize), what: &str)
     assert_eq!(part.mirrored, Some(Mirrored::Used), "{what}");
     assert_eq!(part.deform.n_inverted, 0, "{what}");
     let quiet = Progress::none();
-    let [was, is] = [mesh, &made.mesh].map(|mesh| topology(mesh, &quiet).unwrap());
+    let [was, is] = [mesh, &made.mesh].map(|mesh| topology(mesh, &quiet).expect("nobody cancels"));
     assert_eq!(
         (is.n_borders, is.genus),
         (was.n_borders, was.genus),
@@ -125,7 +128,7 @@ fn assert_done(mesh: &PolygonMesh, (mirror, faces): (Mirror, usize), what: &str)
         is.n_faces
     );
     assert_eq!(is.n_quads, is.n_faces, "{what}");
-    let axis = made.report.plane.unwrap().axis;
+    let axis = made.report.plane.expect("it is symmetric").axis;
     assert_symmetric(&made.mesh, axis, what);
     made
 }
@@ -182,7 +185,7 @@ fn a_shirt_keeps_its_four_borders_and_its_symmetry() {
             is_sleeve || is_neck || p.z < -0.99
         },
     );
-    let made = assert_done(&shirt, (Mirror::Auto, 200), "shirt");
+    let made = assert_done(&shirt, (Mirror::Auto, 160), "shirt");
     assert_eq!(made.report.output.n_borders, 4);
 }
 
@@ -267,7 +270,7 @@ fn of_two_open_parts_beside_the_plane_one_is_the_image_of_the_other() {
 
 #[test]
 fn random_symmetric_meshes_with_windows_stay_symmetric_and_keep_their_shape() {
-    for seed in 0..3 {
+    for seed in 0..2 {
         let mut random = Random::new(seed);
         let mut number = |from: f64, to: f64| from + (to - from) * random.unit();
         let waves =
@@ -291,6 +294,6 @@ fn random_symmetric_meshes_with_windows_stay_symmetric_and_keep_their_shape() {
             is_top || is_side || p.z < -0.99
         };
         let mesh = with_windows(10, place, is_window);
-        assert_done(&mesh, (Mirror::Auto, 160), &format!("seed {seed}"));
+        assert_done(&mesh, (Mirror::Auto, 120), &format!("seed {seed}"));
     }
 }
