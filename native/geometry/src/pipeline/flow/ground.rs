@@ -272,7 +272,8 @@ impl Ground<'_> {
         }
         let is_symmetric = self.surface.doubled.is_some();
         match best {
-            Ok(best) => usize::from(is_symmetric && best.n_missed > 0),
+            // Quads with rings may have to be made again for their number.
+            Ok(best) => usize::from((is_symmetric && best.n_missed > 0) || best.n_rings() > 0),
             // Strips are not taken out of quads with borders.
             Err(_) if self.has_firm_lines() => usize::from(is_symmetric),
             Err(_) => budget.kept_back(is_symmetric),
