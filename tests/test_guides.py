@@ -17,7 +17,8 @@ def ring(radius: float) -> np.ndarray:
 
 
 def test_an_exact_ring_is_laid_and_vertices_lie_on_it(mesh: Arrays) -> None:
-    guide = orbflow_native.Guide(ring(1.0), is_closed=True, is_exact=True)
+    radius = float(np.linalg.norm(mesh[0], axis=1).mean())
+    guide = orbflow_native.Guide(ring(radius), is_closed=True, is_exact=True)
     assert (guide.is_closed, guide.is_exact, guide.points.shape) == (True, True, (40, 3))
     result = orbflow_native.remesh(*mesh, faces=400, mirror="off", guides=[guide])
     (told,) = result.report["guides"]
@@ -25,11 +26,11 @@ def test_an_exact_ring_is_laid_and_vertices_lie_on_it(mesh: Arrays) -> None:
     assert told["distance"] < 0.25
     assert told["text"] is None
     off = np.abs(result.positions[:, 2] - 0.2 * result.positions[:, 0])
-    assert (off < 0.02).sum() >= 20
+    assert (off < 0.02 * radius).sum() >= 20
 
 
 def test_a_stroke_far_off_is_a_warning(mesh: Arrays) -> None:
-    guide = orbflow_native.Guide(ring(2.0), is_closed=True)
+    guide = orbflow_native.Guide(ring(9.0), is_closed=True)
     result = orbflow_native.remesh(*mesh, faces=100, guides=[guide])
     (told,) = result.report["guides"]
     assert (told["strength"], told["outcome"], told["angle"]) == ("follow", "lost", None)
