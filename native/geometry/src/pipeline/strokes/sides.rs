@@ -15,12 +15,14 @@ const SAME: f64 = 1.5;
 struct Piece {
     stroke: Stroke,
     is_positive: bool,
+    /// Whether its stroke has a piece on the positive side.
+    has_positive: bool,
     /// Whether it begins and ends in the plane.
     in_plane: [bool; 2],
 }
 
-/// What lies on the positive side of the plane where a coordinate is 0, what of the other side is the
-/// image of nothing there, and the images of both.
+/// What lies on the positive side of the plane where a coordinate is 0, strokes of the other side that
+/// are the image of nothing there, and the images of both.
 pub fn both(strokes: &[Stroke], axis: usize, edge: f64) -> Vec<Stroke> {
     let pieces = strokes
         .iter()
@@ -39,7 +41,7 @@ pub fn both(strokes: &[Stroke], axis: usize, edge: f64) -> Vec<Stroke> {
         };
         lines.iter().all(|line| off(line) > SAME * edge)
     };
-    own.extend(others.filter(is_new));
+    own.extend(others.filter(|piece| !piece.has_positive && is_new(piece)));
     own.into_iter()
         .flat_map(|piece| whole(piece, axis))
         .collect()
@@ -95,6 +97,7 @@ fn cut(stroke: &Stroke, axis: usize, near: f64) -> Vec<Piece> {
         return vec![Piece {
             stroke: stroke.clone(),
             is_positive,
+            has_positive: is_positive,
             in_plane: [false, false],
         }];
     };
@@ -114,6 +117,7 @@ fn cut(stroke: &Stroke, axis: usize, near: f64) -> Vec<Piece> {
         if let Some(beside) = piece.iter().find(|p| !is_in(p)) {
             pieces.push(Piece {
                 is_positive: beside[axis] > 0.0,
+                has_positive: points.iter().any(|p| p[axis] > 0.0),
                 in_plane: [is_in(&piece[0]), is_in(&piece[piece.len() - 1])],
                 stroke: Stroke {
                     points: piece.to_vec(),
