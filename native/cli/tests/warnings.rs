@@ -4,6 +4,7 @@ mod support;
 
 use std::fs;
 
+use orbflow_geometry::elementary::sin_cos;
 use serde_json::Value;
 use support::{Folder, ball, run};
 
@@ -112,11 +113,8 @@ fn lost_rings_of_a_file_are_told_of_and_refused_by_strict() {
         let points: String = (0..12)
             .map(|i| {
                 let turned = f64::from(i) * std::f64::consts::TAU / 12.0;
-                format!(
-                    "v {} {} 0.1\n",
-                    radius * turned.cos(),
-                    radius * turned.sin()
-                )
+                let (sin, cos) = sin_cos(turned);
+                format!("v {} {} 0.1\n", radius * cos, radius * sin)
             })
             .collect();
         let ids: Vec<String> = (1..=12).map(|i| i.to_string()).collect();
