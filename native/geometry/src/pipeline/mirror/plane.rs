@@ -18,7 +18,7 @@ pub enum Mirror {
     /// In none.
     Off,
     /// In the first across an axis in which every vertex is the image of another, and so are its
-    /// density and the marks of edges, if there is one. A mesh that is not quite its own image
+    /// density and the marks of edges, and no stroke runs aslant through it, if there is one. A mesh that is not quite its own image
     /// would lose by it: there the user names the axis.
     #[default]
     Auto,

@@ -212,3 +212,23 @@ fn a_ring_on_one_side_is_met_on_both_where_quads_are_mirrored() {
     assert_eq!(two.mesh, one.mesh);
     assert_eq!(outcomes(&two), [GuideOutcome::Laid; 2]);
 }
+
+#[test]
+fn a_ring_aslant_to_every_plane_leaves_no_symmetry_to_keep() {
+    let settings = Settings {
+        mirror: Mirror::Auto,
+        ..quads(400)
+    };
+    let axis = |guides: &[Stroke]| {
+        let made = run(&ball(), guides, &settings).unwrap();
+        (outcomes(&made), made.report.plane.map(|plane| plane.axis))
+    };
+    assert_eq!(axis(&[ring(1.0, 0.4)]), (vec![GuideOutcome::Laid], Some(1)));
+    let mut aslant = ring(1.0, 0.4);
+    for p in &mut aslant.points {
+        // A quarter of a right angle about z.
+        let (sin, cos) = sin_cos(std::f64::consts::PI / 8.0);
+        *p = DVec3::new(cos * p.x - sin * p.y, sin * p.x + cos * p.y, p.z);
+    }
+    assert_eq!(axis(&[aslant]), (vec![GuideOutcome::Laid], None));
+}
