@@ -40,8 +40,9 @@ def test_a_stroke_far_off_is_a_warning(mesh: Arrays) -> None:
 
 
 def test_what_is_no_line_is_refused(mesh: Arrays) -> None:
+    single = ring(1.0).astype(np.float32)
     with pytest.raises(TypeError, match=r"points must be a \(N, 3\) float64 array"):
-        orbflow_native.Guide(ring(1.0).astype(np.float32))
+        orbflow_native.Guide(single)  # pyright: ignore
     short = orbflow_native.Guide(ring(1.0)[:2], is_closed=True)
     with pytest.raises(orbflow_native.InputError, match="guide 0 has 2 points; it needs 3"):
         orbflow_native.remesh(*mesh, faces=100, guides=[short])

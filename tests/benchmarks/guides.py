@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import dijkstra
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 DATA = Path(__file__).resolve().parents[3] / "shared" / "data"
 N_STRETCHES = 4
@@ -105,7 +105,7 @@ def landmarks(name: str, points: np.ndarray) -> dict[str, tuple[np.ndarray, floa
     """The places and radii of a mesh's rings."""
     if name.startswith("dev/"):
         places = {part: (np.array(at), radius) for part, (at, radius) in SPOT.items()}
-        return {k: (points[cKDTree(points).query(p)[1]], r) for k, (p, r) in places.items()}
+        return {k: (points[KDTree(points).query(p)[1]], r) for k, (p, r) in places.items()}
     body, _ = read(DATA / "makehuman" / "body.obj")
     found = {}
     for part, (vertex, place, radius) in PERSON.items():
@@ -151,11 +151,11 @@ class Result:
         line = spaced(loop, 0.05 * self.edge)
         n = len(line) - 1
         stops = [k * n // N_STRETCHES for k in range(N_STRETCHES + 1)]
-        tree = cKDTree(self.points)
+        tree = KDTree(self.points)
         at = [int(tree.query(line[i])[1]) for i in stops[:-1]]
         off = []
         for k in range(N_STRETCHES):
-            stretch = cKDTree(line[stops[k] : stops[k + 1] + 1])
+            stretch = KDTree(line[stops[k] : stops[k + 1] + 1])
             away = stretch.query(self.points)[0] / self.edge
             near = (away[self.ends] < 1.0).all(axis=1)
             a, b = self.ends[near].T
@@ -171,7 +171,7 @@ class Result:
                 return np.inf, np.inf
             places = self.points[way]
             places = np.vstack([places, (places[1:] + places[:-1]) / 2])
-            off.append(cKDTree(line).query(places)[0] / self.edge)
+            off.append(KDTree(line).query(places)[0] / self.edge)
         off = np.concatenate(off)
         return float(off.max()), float(off.mean())
 
@@ -180,10 +180,10 @@ class Result:
         line = spaced(loop, 0.1 * self.edge)
         middles = self.points[self.faces].mean(axis=1)
         way = np.diff(line, axis=0)
-        face = cKDTree(middles).query((line[1:] + line[:-1]) / 2)[1]
+        face = KDTree(middles).query((line[1:] + line[:-1]) / 2)[1]
         a, b, c, d = (self.points[self.faces[face, i]] for i in range(4))
         arms = [(b - a) + (c - d), (d - a) + (c - b)]
-        normal = np.cross(*arms)
+        normal = np.cross(arms[0], arms[1])
         normal /= np.linalg.norm(normal, axis=1)[:, None]
         way -= normal * (way * normal).sum(axis=1)[:, None]
         cosines = [

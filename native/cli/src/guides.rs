@@ -168,7 +168,7 @@ mod tests {
             (2, false, Strength::Follow),
         ];
         assert_eq!(told, wanted);
-        assert_eq!(strokes[2].points[1].to_array(), [1.0, 1.0, 0.0]);
+        assert_eq!(strokes[2].points[1], [1.0, 1.0, 0.0].into());
     }
 
     #[test]

@@ -109,18 +109,14 @@ fn files_of_other_programs_are_named_and_what_to_do_with_them() {
 fn lost_rings_of_a_file_are_told_of_and_refused_by_strict() {
     let folder = Folder::new();
     let input = folder.write("ball.obj", &ball(""));
-    let ring = |radius: f64| {
-        let points: String = (0..12)
-            .map(|i| {
-                let turned = f64::from(i) * std::f64::consts::TAU / 12.0;
-                let (sin, cos) = sin_cos(turned);
-                format!("v {} {} 0.1\n", radius * cos, radius * sin)
-            })
-            .collect();
-        let ids: Vec<String> = (1..=12).map(|i| i.to_string()).collect();
-        format!("{points}l {} 1\n", ids.join(" "))
-    };
-    let far = folder.write("far.obj", &ring(3.0));
+    let points = (0..12).map(|i| {
+        let (sin, cos) = sin_cos(f64::from(i) * std::f64::consts::TAU / 12.0);
+        format!("v {} {} 0.1", 3.0 * cos, 3.0 * sin)
+    });
+    let points: Vec<String> = points.collect();
+    let ids: Vec<String> = (1..=12).map(|i| i.to_string()).collect();
+    let ring = format!("{}\nl {} 1\n", points.join("\n"), ids.join(" "));
+    let far = folder.write("far.obj", &ring);
     let [output, report] = ["out.obj", "r.json"].map(|name| folder.path(name));
     let wanted = [
         "remesh", &input, &output, "--faces", "300", "--report", &report, "--guides",

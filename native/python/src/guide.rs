@@ -18,6 +18,10 @@ pub struct Guide(Stroke);
 impl Guide {
     #[new]
     #[pyo3(signature = (points, *, is_closed=false, is_exact=false))]
+    #[expect(
+        clippy::fn_params_excessive_bools,
+        reason = "the keywords of a Python function"
+    )]
     fn new(points: &Bound<'_, PyAny>, is_closed: bool, is_exact: bool) -> PyResult<Self> {
         let strength = if is_exact {
             Strength::Exact

@@ -144,9 +144,7 @@ pub fn remesh<'py>(
         corner_vert,
     }
     .mesh(scale)?;
-    let materials = material_index
-        .map(|array| arrays::column(array, "material_index", "(F,)"))
-        .transpose()?;
+    let materials = material_index.map(materials).transpose()?;
     let pairs = |array: Option<_>, kind| array.map(|a| arrays::vertex_pairs(a, kind)).transpose();
     let marked = pairs(marked_edges, "marked")?;
     let carried = pairs(carried_edges, "carried")?;
@@ -155,8 +153,7 @@ pub fn remesh<'py>(
     let reduced = reduced
         .map(|(points, triangles)| arrays::triangles(&points, &triangles, scale))
         .transpose()?;
-    let guides = guides.unwrap_or_default();
-    let guides: Vec<Stroke> = guides.iter().map(|guide| guide.stroke(scale)).collect();
+    let guides = strokes(&guides.unwrap_or_default(), scale);
     let settings = Settings {
         faces,
         kind: report::choice("kind", kind)?,
@@ -200,6 +197,14 @@ pub fn remesh<'py>(
     })?;
     remeshed.report.kept = errors::unscaled(&remeshed.report.kept, scale);
     Remeshed::new(py, &remeshed, scale)
+}
+
+fn materials(array: &Bound<'_, PyAny>) -> PyResult<Vec<i32>> {
+    arrays::column(array, "material_index", "(F,)")
+}
+
+fn strokes(guides: &[PyRef<'_, Guide>], scale: DVec3) -> Vec<Stroke> {
+    guides.iter().map(|guide| guide.stroke(scale)).collect()
 }
 
 /// How a result is scored: not at all by no samples.

@@ -53,7 +53,7 @@ use follow::Follower;
 use lock::Seams;
 pub use polish::lay;
 use reach::Span;
-pub use settings::{Settings, Sizes};
+pub use settings::{Lines, Settings, Sizes};
 pub use settle::settle;
 use sheet::Sheet;
 pub use straddle::Anchor;
@@ -186,7 +186,7 @@ pub fn deform_held(
         None => settings.n_relaxations,
         Some(_) => settings.n_quad_relaxations,
     };
-    if !settings.is_on_lines {
+    if settings.lines == Lines::Sought {
         slide_and_flip(
             &mut sheet,
             cover.as_mut(),
@@ -287,7 +287,11 @@ pub fn deform_flow(
         let [from, to] = [round, round + n].map(|r| 0.1 + 0.5 * r as f64 / n_rounds as f64);
         let part = progress.part("", from, to);
         report.n_stuck = follower.follow(&mut sheet, n, &part)?;
-        seams.slide(&mut sheet, follower.stars(), settings.is_on_lines);
+        seams.slide(
+            &mut sheet,
+            follower.stars(),
+            settings.lines != Lines::Sought,
+        );
     }
     seams.release_bad(&mut sheet);
     [report.n_feature_goals, report.n_feature_vertices] = seams.counts(&sheet);
@@ -297,14 +301,14 @@ pub fn deform_flow(
         crosses: flowing.crosses,
         progress: &progress.part("", 0.7, 1.0),
     };
-    if settings.is_on_lines && report.n_feature_vertices < report.n_feature_goals {
+    if settings.lines != Lines::Sought && report.n_feature_vertices < report.n_feature_goals {
         let mut forced = sheet.clone();
         seams.force(&mut forced);
         let mut done = report;
         finish.fit(&mut forced, &mut done)?;
         let is_sound =
             || untangle::worse_than(&forced, 0.0).is_empty() && done.n_crossing_left == 0;
-        if settings.forces_lines || is_sound() {
+        if settings.lines == Lines::Forced || is_sound() {
             done.n_feature_vertices = done.n_feature_goals;
             return Ok(Deformed::new(forced, done));
         }

@@ -10,12 +10,8 @@ use super::Anchor;
 pub struct Settings {
     /// What faces are evened out to while vertices slide; quads that flow have sizes of their own.
     pub sizes: Sizes,
-    /// Whether the target is a solid. Vertices of triangles lie along its lines already, short ones too:
-    /// they are set onto them before anything slides. Those of quads that flow are set onto their lines
-    /// whatever is in the way, and spread evenly along bent ones.
-    pub is_on_lines: bool,
-    /// Whether vertices of quads that flow get onto their lines whatever that does to their faces.
-    pub forces_lines: bool,
+    /// How far vertices go for sharp lines.
+    pub lines: Lines,
     /// Whether vertices of quads that flow end on the surface instead of where their faces miss it
     /// least: with the ends of a drum on its rims, the rings between would stand out beyond them.
     pub is_inscribed: bool,
@@ -45,6 +41,21 @@ pub struct Settings {
     pub evenness: f64,
 }
 
+/// How far vertices go for sharp lines.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Lines {
+    /// They walk to lines that are long and clear, as far as that spoils no face.
+    #[default]
+    Sought,
+    /// The target is a solid. Vertices of triangles lie along its lines already, short ones too: they
+    /// are set onto them before anything slides. Those of quads that flow are set onto their lines
+    /// where that leaves no face inverted, and spread evenly along bent ones.
+    Kept,
+    /// The same, whatever that does to faces.
+    Forced,
+}
+
 /// The size that faces are evened out to.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -60,8 +71,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             sizes: Sizes::Equal,
-            is_on_lines: false,
-            forces_lines: false,
+            lines: Lines::Sought,
             is_inscribed: false,
             n_relaxations: 4,
             n_quad_relaxations: 0,

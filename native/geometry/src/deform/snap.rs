@@ -9,13 +9,13 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use super::Settings;
 use super::cover::Cover;
 use super::project::lift_towards;
 use super::relax::relax;
 use super::route::Router;
 use super::sheet::Sheet;
 use super::target::Target;
+use super::{Lines, Settings};
 use crate::measure::FeatureLine;
 use crate::mesh::{FaceId, VertexId, VertexMap};
 use crate::nearest::Bvh;
@@ -47,10 +47,10 @@ pub(super) fn snap(
     progress: &Progress,
 ) -> Result<[usize; 2], Cancelled> {
     let edge = sheet.mean_edge();
-    let shortest = if settings.is_on_lines {
-        0.0
-    } else {
+    let shortest = if settings.lines == Lines::Sought {
         SHORTEST * edge
+    } else {
+        0.0
     };
     let lines = target.features().iter();
     let lines = lines.filter(|line| line.length() > shortest);

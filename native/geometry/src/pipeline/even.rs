@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::open::Opening;
 use super::strokes::Finer;
-use crate::deform::{self, Held, Sizes, Target};
+use crate::deform::{self, Held, Lines, Sizes, Target};
 use crate::elementary::powf;
 use crate::measure::{FeatureLine, feature_lines, loose_share, sharp_edges};
 use crate::mesh::{HalfedgeId, HalfedgeMap, Id, PolygonMesh, TriangleMesh, VertexId, VertexMap};
@@ -212,7 +212,11 @@ pub fn even(
         sizes: if is_finer { Sizes::Own } else { Sizes::Equal },
         // Quads are made on it, and tips that are moved would be lost to them.
         separates: false,
-        is_on_lines: quads.is_solid,
+        lines: if quads.is_solid {
+            Lines::Kept
+        } else {
+            Lines::Sought
+        },
         ..deform::Settings::default()
     };
     let primitive = (&primitive, &held);

@@ -1,7 +1,7 @@
 //! One attempt at quads that flow: found on the even surface, laid on its sphere, fitted.
 
 use super::ground::{Ground, Refusal};
-use crate::deform::{self, Deformed, Flowing};
+use crate::deform::{self, Deformed, Flowing, Lines};
 use crate::elementary::powf;
 use crate::embed::{self, Covered};
 use crate::flow::{self, FirmEdges, Flow};
@@ -10,7 +10,7 @@ use crate::mirror::Reflection;
 use crate::pipeline::attempt::Attempt;
 use crate::pipeline::clock::Clock;
 use crate::pipeline::flowed::{Flowed, FlowedPart};
-use crate::pipeline::open::{Lines, Opening, Regions};
+use crate::pipeline::open::{self, Opening, Regions};
 use crate::pipeline::paired::told;
 use crate::pipeline::probe::n_missed;
 use crate::pipeline::{Error, crosses, density, mirror};
@@ -106,7 +106,7 @@ impl Ground<'_> {
         let between = border.map(|firm| Regions::between(even, firm));
         let partly = between.as_ref().filter(|_| !flow.unmet.is_empty());
         let regions = self.surface.regions.as_ref().or(partly);
-        let lines = Lines {
+        let lines = open::Lines {
             met: &flow.firm,
             unmet: &flow.unmet,
             surface: regions.map(|regions| (even, regions)),
@@ -119,7 +119,7 @@ impl Ground<'_> {
         let Some(all) = between.map(Regions::all_loose) else {
             return Ok(opened.map(|opened| (opened, n_rings)));
         };
-        let lines = Lines {
+        let lines = open::Lines {
             met: &[],
             unmet: &[],
             surface: Some((even, &all)),
@@ -197,8 +197,7 @@ impl Ground<'_> {
         };
         let settings = deform::Settings {
             evenness: self.evenness(),
-            is_on_lines: self.keeps_lines(),
-            forces_lines: self.has_firm(),
+            lines: self.lines(),
             is_inscribed: self.is_solid(),
             // What is virtual may lie on what is real.
             separates: self.asked.opening.is_none_or(|opening| !opening.overlaps()),
@@ -207,6 +206,17 @@ impl Ground<'_> {
         let even = &self.surface.even;
         let fitted = deform::deform_flow(even, flowing, self.target, &settings, progress);
         Ok(fitted?)
+    }
+
+    /// How far vertices go for sharp lines.
+    fn lines(&self) -> Lines {
+        if self.has_firm() {
+            Lines::Forced
+        } else if self.is_solid() {
+            Lines::Kept
+        } else {
+            Lines::Sought
+        }
     }
 
     /// Fitted quads made images of each other again in the plane, where they were.

@@ -69,7 +69,7 @@ impl Edges {
                 for p in [a, (a + b) / 2.0] {
                     let off = stretch.distance(p);
                     // What reaches past the end of a stretch lies on the next.
-                    let is_past = self.is_past(&stretch, p);
+                    let is_past = is_past(&stretch, p);
                     sum += if is_past { 0.0 } else { off };
                     count += f64::from(u8::from(!is_past));
                     most = most.max(if is_past { 0.0 } else { off });
@@ -80,13 +80,6 @@ impl Edges {
             mean: sum / count / edge,
             most: most / edge,
         })
-    }
-
-    /// Whether the point of a stretch that is nearest to a place is an end of it.
-    fn is_past(&self, stretch: &Polyline, p: DVec3) -> bool {
-        let ends = [stretch.point(0.0), stretch.point(stretch.length())];
-        let off = stretch.distance(p);
-        ends.iter().any(|end| end.distance(p) <= off * (1.0 + 1e-9))
     }
 
     fn nearest(&self, place: DVec3) -> Option<VertexId> {
@@ -130,4 +123,11 @@ impl Edges {
         }
         None
     }
+}
+
+/// Whether the point of a stretch that is nearest to a place is an end of it.
+fn is_past(stretch: &Polyline, p: DVec3) -> bool {
+    let ends = [stretch.point(0.0), stretch.point(stretch.length())];
+    let off = stretch.distance(p);
+    ends.iter().any(|end| end.distance(p) <= off * (1.0 + 1e-9))
 }

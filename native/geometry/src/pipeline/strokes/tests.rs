@@ -201,7 +201,7 @@ fn a_ring_on_one_side_is_met_on_both_where_quads_are_mirrored() {
             .collect(),
         ..stroke.clone()
     };
-    let one = run(&ball(), &[stroke.clone()], &settings).unwrap();
+    let one = run(&ball(), std::slice::from_ref(&stroke), &settings).unwrap();
     assert_eq!(
         outcomes(&one),
         [GuideOutcome::Laid],

@@ -70,13 +70,13 @@ impl Strokes {
                 Some(_) => Seen::default(),
                 None => faces.seen(stroke, surface),
             };
-            Ok(report((guide, stroke.strength), *far, seen))
+            Ok(report((guide, stroke.strength), *far, &seen))
         });
         told.collect()
     }
 }
 
-fn report((guide, strength): (usize, Strength), far: Option<f64>, seen: Seen) -> GuideReport {
+fn report((guide, strength): (usize, Strength), far: Option<f64>, seen: &Seen) -> GuideReport {
     let is_on = seen.most.is_some_and(|most| most <= ON_IT);
     let is_along = seen.angle.is_some_and(|angle| angle <= FOLLOWS);
     let outcome = match strength {
