@@ -229,12 +229,6 @@ const OWN_SIZE: f64 = 0.8;
 /// How much they wish to be squares of the mean size instead, in units of the usual wish: at 2.4 a
 /// hundredth of them is sheared, from 6 on they miss detail.
 const MEAN_SIZE: f64 = 4.8;
-/// How quads are held that end on the surface: with less along it a drum of 54 quads is twisted by
-/// 6° between its rims, with more quads are no longer made square.
-const INSCRIBED: Anchor = Anchor {
-    across: 0.1,
-    along: 1.0,
-};
 /// Rounds of relaxation between two moves along sharp lines.
 const ROUNDS_PER_SLIDE: usize = 4;
 
@@ -332,15 +326,10 @@ impl Finish<'_> {
         let edge = sheet.mean_edge();
         report.n_unprojected = project::project(sheet, target, edge, progress)?;
         reach::reach(sheet, (target, Span::MISSED), progress)?;
-        let anchor = if settings.is_inscribed {
-            INSCRIBED
-        } else {
-            settings.flow_anchor
-        };
         let fit = Fit {
             target,
             reach: sheet.mean_edge(),
-            anchor,
+            anchor: settings.anchor_of_flow(),
             sites: &sites::spread(target, SITES_PER_QUAD * sheet.faces().len()),
             squareness: settings.squareness * (1.0 - OWN_SIZE * settings.evenness),
             even: (settings.evenness > 0.0).then_some(Even {

@@ -99,13 +99,13 @@ impl<'a> Edges<'a> {
     ) -> Self {
         let all = match creases {
             Creases::All => guides.lines.clone(),
-            Creases::Long => either(&sharp_edges(mesh, sharp_angle), guides.lines),
+            Creases::Long => sharp_edges(mesh, sharp_angle).or(guides.lines),
         };
         let is_firm = |h| guides.firm.is_some_and(|firm| firm.is_on[h]);
         let is_sharp = |h| all[h] && !guides.marked[h] && !is_firm(h);
         Self {
             along: match guides.turned {
-                Some(turned) => either(&with_plane(guides, &all), turned),
+                Some(turned) => with_plane(guides, &all).or(turned),
                 None => with_plane(guides, &all),
             },
             sharp: mesh.halfedge_ids().map(is_sharp).collect(),
@@ -227,7 +227,7 @@ fn firm<'a>(
 /// Some edges and those in the plane of symmetry.
 fn with_plane(guides: Guides<'_>, edges: &HalfedgeMap<bool>) -> HalfedgeMap<bool> {
     match guides.mirror {
-        Some(doubled) => either(edges, &plane_edges(doubled)),
+        Some(doubled) => edges.or(&plane_edges(doubled)),
         None => edges.clone(),
     }
 }
@@ -241,7 +241,7 @@ fn lines_of(
     let Some(known) = along.firm else {
         return creases::lines(mesh, field, along, h);
     };
-    let edges = &either(along.edges, &known.is_on);
+    let edges = &along.edges.or(&known.is_on);
     let sharp = Sharp { edges, ..along };
     let whole = creases::whole_lines(mesh, field, sharp, h);
     let mut lines = creases::firm_lines(whole, &known.is_on);
@@ -262,9 +262,4 @@ fn planned(guides: Guides<'_>, field: &OrientationField, beside: Vec<Line>) -> P
             pairs: Vec::new(),
         },
     }
-}
-
-/// The edges that are in one of two sets.
-fn either(a: &HalfedgeMap<bool>, b: &HalfedgeMap<bool>) -> HalfedgeMap<bool> {
-    a.iter().zip(b).map(|(a, b)| a | b).collect()
 }

@@ -39,6 +39,7 @@ pub mod strips;
 mod thin;
 pub mod wish;
 
+pub use creases::CORNER_ANGLE;
 pub use error::Error;
 pub use guides::{FirmEdges, Guides, Real};
 pub use quads::{Flow, Report, flow};

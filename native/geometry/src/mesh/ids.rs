@@ -170,6 +170,14 @@ impl<I: Id, T> IdMap<I, T> {
     }
 }
 
+impl<I: Id> IdMap<I, bool> {
+    /// What is marked in this map or in another one of the same elements.
+    #[must_use]
+    pub fn or(&self, other: &Self) -> Self {
+        self.iter().zip(other).map(|(a, b)| a | b).collect()
+    }
+}
+
 impl<'a, I: Id, T> IntoIterator for &'a IdMap<I, T> {
     type Item = &'a T;
     type IntoIter = std::slice::Iter<'a, T>;

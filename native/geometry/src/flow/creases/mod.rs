@@ -26,7 +26,7 @@ pub use rows::{Firm, Row, rows, tie_rows, twin_rows};
 pub use seams::{goals, seams};
 
 /// A line that turns by more than this at a vertex has a corner there (53°).
-const CORNER_ANGLE: f64 = 0.927;
+pub const CORNER_ANGLE: f64 = 0.927;
 
 /// Edges that lines run along.
 #[derive(Clone, Copy)]

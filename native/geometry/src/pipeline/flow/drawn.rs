@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::ground::{Firm, Surface};
 use crate::deform::Target;
-use crate::flow::FirmEdges;
+use crate::flow::{CORNER_ANGLE, FirmEdges};
 use crate::guidance::{Drawn, Pen, Strength, draw};
 use crate::measure::angle_between;
 use crate::mesh::{FaceId, HalfedgeMap, Id, TriangleMesh, VertexId, VertexMap};
@@ -16,8 +16,6 @@ use crate::sphere_map::SphereMap;
 /// Points of a stroke are so far apart, in edges of a quad: at 1 a ring of six quads loses a twentieth
 /// of its width.
 const STEP: f64 = 0.5;
-/// A stroke that turns by more than this at a vertex has a corner there (53°).
-const CORNER_ANGLE: f64 = 0.927;
 
 impl Surface {
     /// The same with the strokes that are asked for along its edges; it as it is where they cannot be
@@ -102,7 +100,7 @@ impl Surface {
     ) -> Self {
         let mesh = even.mesh();
         let exact = drawn.along(Strength::Exact);
-        let with = |edges| either(&drawn.carried(edges), &exact);
+        let with = |edges| drawn.carried(edges).or(&exact);
         let border = asked.opening.zip(self.border.as_ref());
         let border =
             border.map(|(opening, old)| opening.firm(mesh, drawn.carried(&old.is_on), target));
@@ -137,7 +135,7 @@ impl Firm {
             for v in mesh.vertex_ids() {
                 edges.is_corner[v] |= turns(mesh, exact, v);
             }
-            edges.is_on = either(&edges.is_on, exact);
+            edges.is_on = edges.is_on.or(exact);
             edges.may_end = true;
             Self {
                 edges,
@@ -155,8 +153,4 @@ fn turns(mesh: &TriangleMesh, on: &HalfedgeMap<bool>, v: VertexId) -> bool {
     };
     let [a, b] = [a, b].map(|h| mesh.position(mesh.target(h)) - mesh.position(v));
     angle_between(-a, b) > CORNER_ANGLE
-}
-
-fn either(a: &HalfedgeMap<bool>, b: &HalfedgeMap<bool>) -> HalfedgeMap<bool> {
-    a.iter().zip(b).map(|(a, b)| a | b).collect()
 }

@@ -103,9 +103,11 @@ impl Ground<'_> {
     ) -> Result<Result<(Deformed, usize), String>, Cancelled> {
         let even = &self.surface.even;
         let border = self.surface.border.as_ref();
-        let between = border.map(|firm| Regions::between(even, firm));
-        let partly = between.as_ref().filter(|_| !flow.unmet.is_empty());
-        let regions = self.surface.regions.as_ref().or(partly);
+        let between = || border.map(|firm| Regions::between(even, firm));
+        let loose = self.surface.regions.as_ref();
+        let is_partly = loose.is_none() && !flow.unmet.is_empty();
+        let partly = is_partly.then(between).flatten();
+        let regions = loose.or(partly.as_ref());
         let lines = open::Lines {
             met: &flow.firm,
             unmet: &flow.unmet,
@@ -116,7 +118,7 @@ impl Ground<'_> {
         if opened.is_ok() || !self.is_bound_to_cuts() {
             return Ok(opened.map(|opened| (opened, n_rings)));
         }
-        let Some(all) = between.map(Regions::all_loose) else {
+        let Some(all) = between().map(Regions::all_loose) else {
             return Ok(opened.map(|opened| (opened, n_rings)));
         };
         let lines = open::Lines {
