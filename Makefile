@@ -16,7 +16,7 @@ SOURCES := $(shell find Cargo.toml Cargo.lock native/*/Cargo.toml native/*/src n
 ADDON := $(shell find addon -type f ! -name "*.pyc")
 
 .SECONDARY: # keep the stamps
-.PHONY: help demo test test-rust test-engines test-python wheel zip fixtures pictures bench weights evaluation sets lint package format ci ci-more clean
+.PHONY: help demo test test-rust test-drawn test-engines test-python wheel zip fixtures pictures bench weights evaluation sets lint package format ci ci-more clean
 
 help: ## Prints this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -26,8 +26,12 @@ demo: dist/zip.stamp $(VENV)/venv.stamp ## Remeshes a fixture in the real Blende
 
 test: test-rust test-python ## Runs every test, with flex and one Blender
 
-test-rust: ## Runs the tests of the Rust crates
+test-rust: export PROPTEST_RNG_SEED ?= 1
+test-rust: ## Runs the tests of the Rust crates, the drawn ones with the same draws each time
 	cargo test --workspace --features $(FEATURES) --locked --quiet
+
+test-drawn: ## Runs the drawn tests of geometry with draws of their own, N times
+	for i in $$(seq $(or $(N),1)); do cargo test -p orbflow-geometry --locked --quiet || exit; done
 
 test-engines: ## Runs the tests of training on every engine; a driver in software stands in for a GPU
 	scripts/install_libraries.sh vulkan
@@ -99,6 +103,7 @@ ci: ## Runs what must pass before anything lands: tests and lints
 ci-more: export CARGO_INCREMENTAL = 0
 ci-more: export PIP_NO_CACHE_DIR = 1
 ci-more: ## Runs what the workflow runs besides, as before a release: every engine, the oldest Blender, the crates
+	$(MAKE) test-drawn
 	$(MAKE) test-engines
 	$(MAKE) lint PYTHON_VERSION=3.13 FEATURES=$(ENGINES)
 	$(MAKE) test-python PYTHON_VERSION=3.11

@@ -146,23 +146,7 @@ proptest! {
     fn a_damaged_mesh_keeps_its_shape_or_is_refused(
         bytes in prop::collection::vec(any::<u8>(), 1..60), is_quads in any::<bool>()
     ) {
-        let Some(mesh) = common::edits::damaged(&bytes) else { return Ok(()) };
-        let kind = if is_quads { Kind::Quads } else { Kind::Triangles };
-        let settings = Settings { weld: None, ..quick(60, kind) };
-        let quiet = Progress::none();
-        let made = pipeline::remesh(Input::new(&mesh), &settings, &Solver::default(), &quiet);
-        let Ok(made) = made else { return Ok(()) };
-        prop_assert!(made.mesh.positions().iter().all(|p| p.is_finite()));
-        let found = measure::topology(&made.mesh, &quiet).unwrap();
-        let Ok(cleaned) = clean::clean(&mesh, &quiet) else { return Ok(()) };
-        let wanted = measure::topology_of_triangles(&cleaned.mesh);
-        // Surfaces that touch, which cleaning has parted, touch again.
-        if made.report.rejoined.is_some() {
-            prop_assert!(found.n_components <= wanted.n_components);
-        } else if made.report.kept.is_empty() {
-            let figures = |t: Topology| (t.n_components, t.n_borders, t.genus);
-            prop_assert_eq!(figures(found), figures(wanted));
-        }
+        check_damaged(&bytes, is_quads);
     }
 
     #[test]
@@ -191,6 +175,48 @@ proptest! {
             Ok(_) => prop_assert!(!token.is_cancelled(), "finished although cancelled"),
         }
     }
+}
+
+/// A damaged mesh keeps its topology, or is refused.
+fn check_damaged(bytes: &[u8], is_quads: bool) {
+    let Some(mesh) = common::edits::damaged(bytes) else {
+        return;
+    };
+    let kind = if is_quads {
+        Kind::Quads
+    } else {
+        Kind::Triangles
+    };
+    let settings = Settings {
+        weld: None,
+        ..quick(60, kind)
+    };
+    let quiet = Progress::none();
+    let made = pipeline::remesh(Input::new(&mesh), &settings, &Solver::default(), &quiet);
+    let Ok(made) = made else { return };
+    assert!(made.mesh.positions().iter().all(|p| p.is_finite()));
+    let found = measure::topology(&made.mesh, &quiet).unwrap();
+    let Ok(cleaned) = clean::clean(&mesh, &quiet) else {
+        return;
+    };
+    let wanted = measure::topology_of_triangles(&cleaned.mesh);
+    // Surfaces that touch, which cleaning has parted, touch again.
+    if made.report.rejoined.is_some() {
+        assert!(found.n_components <= wanted.n_components);
+    } else if made.report.kept.is_empty() {
+        let figures = |t: Topology| (t.n_components, t.n_borders, t.genus);
+        assert_eq!(figures(found), figures(wanted));
+    }
+}
+
+/// What once failed, by the bytes that drew it.
+#[test]
+fn damaged_meshes_that_failed_once_are_done() {
+    let bytes = [
+        109, 237, 0, 0, 26, 175, 24, 201, 67, 69, 1, 114, 80, 75, 89, 8, 26, 93, 32, 146, 6, 22,
+        54, 205, 141, 89,
+    ];
+    check_damaged(&bytes, true);
 }
 
 /// Balls side by side, each with a material of its own.

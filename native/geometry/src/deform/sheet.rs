@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use crate::elementary::sin_cos;
 use crate::mesh::{FaceId, FaceMap, PolygonMesh, VertexId, VertexMap};
-use crate::sphere_map::{SphereMap, SurfacePoint, is_unfolded, walk_along};
+use crate::sphere_map::{SphereMap, SurfacePoint, is_unfolded, stays_cover, walk_along};
 
 /// Cosine between a quad's own normal and the surface's below which the quad counts as turned over.
 const LEAST_AGREEMENT: f64 = 0.2;
@@ -261,18 +261,11 @@ impl<'a> Sheet<'a> {
         }
     }
 
-    /// Whether every face at a vertex stays positive with another sphere point for it.
+    /// Whether the faces cover the sphere once with another sphere point for a vertex.
     pub fn covers(&self, vertex: VertexId, sphere: DVec3) -> bool {
-        let at = |v: VertexId| {
-            if v == vertex {
-                sphere
-            } else {
-                self.points[v].sphere
-            }
-        };
-        self.rings[vertex]
-            .iter()
-            .all(|&face| is_unfolded(self.faces[face].corners(), at))
+        let ring = self.rings[vertex].iter();
+        let ring = ring.map(|&face| self.faces[face].corners());
+        stays_cover(ring, (vertex, sphere), |v| self.points[v].sphere)
     }
 
     /// The worst quality of the faces at a vertex if it were at `to`.

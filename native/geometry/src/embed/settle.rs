@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::mesh::{FaceId, PolygonMesh, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
-use crate::sphere_map::is_unfolded;
+use crate::sphere_map::stays_cover;
 
 /// Rounds over all vertices that are not where they were proposed.
 const N_ROUNDS: usize = 30;
@@ -66,18 +66,16 @@ fn approach(
 ) -> bool {
     let from = sphere[v];
     for share in SHARES {
-        sphere[v] = if share < 1.0 {
+        let there = if share < 1.0 {
             from.lerp(to, share).normalize_or(from)
         } else {
             to
         };
-        if ring
-            .iter()
-            .all(|&face| is_unfolded(mesh.face(face), |v| sphere[v]))
-        {
+        let faces = ring.iter().map(|&face| mesh.face(face));
+        if stays_cover(faces, (v, there), |v| sphere[v]) {
+            sphere[v] = there;
             return true;
         }
     }
-    sphere[v] = from;
     false
 }

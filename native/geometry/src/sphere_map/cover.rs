@@ -1,9 +1,11 @@
 //! The check that a polygon mesh covers the unit sphere exactly once.
 
+use std::f64::consts::TAU;
+
 use glam::DVec3;
 use thiserror::Error;
 
-use super::{degree_of, is_positive};
+use super::{degree_of, is_positive, solid_angle};
 use crate::mesh::{FaceId, PolygonMesh, VertexId};
 
 /// Why a polygon mesh does not cover the sphere once.
@@ -102,6 +104,38 @@ pub fn check_cover(mesh: &PolygonMesh, points: &[DVec3]) -> Result<(), NotACover
 /// the diagonals from one of its corners.
 pub fn is_unfolded(face: &[VertexId], at: impl Fn(VertexId) -> DVec3) -> bool {
     positive_fan(face, at).is_some()
+}
+
+/// Whether a cover of the sphere stays one when a vertex goes to another point. `ring` holds the
+/// faces at the vertex, `at` says where every vertex is now.
+///
+/// Positive faces are not enough: where they are as large as a hemisphere, the faces round a point
+/// may all be positive and yet run round it twice. Then they cover 4π more than before.
+pub fn stays_cover<'f>(
+    ring: impl Iterator<Item = &'f [VertexId]> + Clone,
+    (vertex, to): (VertexId, DVec3),
+    at: impl Fn(VertexId) -> DVec3,
+) -> bool {
+    let moved = |v: VertexId| if v == vertex { to } else { at(v) };
+    if !ring.clone().all(|face| is_unfolded(face, moved)) {
+        return false;
+    }
+    let is_near = |&v: &VertexId| v == vertex || at(v).dot(to) > 0.0;
+    let is_small = ring.clone().flatten().all(is_near);
+    is_small || (area(ring.clone(), moved) - area(ring, at)).abs() < TAU
+}
+
+/// The solid angle that some unfolded faces cover together.
+fn area<'f>(faces: impl Iterator<Item = &'f [VertexId]>, at: impl Fn(VertexId) -> DVec3) -> f64 {
+    let area = |face: &[VertexId]| {
+        let apex = positive_fan(face, &at).unwrap_or(0);
+        let angles = fan_triangles(face, apex).map(|t| {
+            let [a, b, c] = t.map(&at);
+            solid_angle(a, b, c)
+        });
+        angles.sum::<f64>()
+    };
+    faces.map(area).sum()
 }
 
 /// The corner from which the diagonals split a face into positive spherical triangles only.

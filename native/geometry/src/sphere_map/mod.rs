@@ -19,7 +19,7 @@ use thiserror::Error;
 
 use crate::elementary::atan2;
 use crate::mesh::{FaceId, Id, TriangleMesh, VertexId, VertexMap};
-pub use cover::{NotACover, check_cover, is_unfolded};
+pub use cover::{NotACover, check_cover, is_unfolded, stays_cover};
 use locate::HintGrid;
 pub use travel::walk_along;
 
