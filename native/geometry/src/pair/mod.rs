@@ -15,6 +15,7 @@
 
 mod grid;
 mod improve;
+mod layout;
 mod matching;
 mod open;
 mod refine;
@@ -31,9 +32,11 @@ use crate::mesh::{HalfedgeId, HalfedgeMap, Id, PolygonMesh, TriangleMesh, Vertex
 use crate::progress::{Cancelled, Progress};
 use crate::sphere_map::{SphereMap, is_positive};
 pub use grid::Grid;
+pub use layout::{Cut, Layout};
 pub use open::{OpenPairs, pair_open};
 pub use refine::refine;
 pub use split::split;
+pub use worth::squareness;
 
 /// Quads of pairs of triangles.
 #[derive(Clone, PartialEq, Debug)]

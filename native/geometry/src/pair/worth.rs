@@ -161,7 +161,7 @@ fn corners(mesh: &TriangleMesh, h: HalfedgeId) -> [VertexId; 4] {
 
 /// The sine of the worst corner of a quad, seen along its own normal: 1 for a rectangle, negative
 /// where a corner turns the wrong way.
-pub(super) fn squareness(p: [DVec3; 4]) -> f64 {
+pub fn squareness(p: [DVec3; 4]) -> f64 {
     let normal = (p[2] - p[0]).cross(p[3] - p[1]).normalize_or_zero();
     let edges: [DVec3; 4] = array::from_fn(|i| (p[(i + 1) % 4] - p[i]).normalize_or_zero());
     let turns = (0..4).map(|i| edges[i].cross(edges[(i + 1) % 4]).dot(normal));

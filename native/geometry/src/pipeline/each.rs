@@ -20,6 +20,8 @@ use crate::progress::Progress;
 pub struct Common<'a> {
     pub prepared: &'a Prepared,
     pub marks: &'a Marks,
+    /// The sides of the polygons that came in, where their quads may stay.
+    pub sides: &'a Marks,
     pub density: &'a Density,
     /// The mesh as somebody else reduced it, where it is one part.
     pub reduced: Option<&'a PolygonMesh>,
@@ -118,6 +120,7 @@ impl Work<'_, '_> {
                 mirror: (role, common.plane),
                 reduced: self.reduced,
                 marks: common.marks,
+                sides: common.sides,
                 density: common.density,
                 strokes: common.strokes.on_part(at),
                 has_tubes: false,

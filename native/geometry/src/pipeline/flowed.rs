@@ -37,6 +37,11 @@ pub enum Flowed {
     },
     /// They are a grid, as the part was: with other counts.
     Grid,
+    /// They are the part's own quads, cut into finer ones.
+    Own {
+        /// How many strips of quads there are, each cut into a number of rows.
+        n_strips: usize,
+    },
     /// They do not.
     Refused {
         /// Why not.
@@ -51,7 +56,7 @@ impl Flowed {
     pub fn n_rings(&self) -> usize {
         match self {
             Self::Used { n_rings, .. } => *n_rings,
-            Self::Grid | Self::Refused { .. } => 0,
+            Self::Grid | Self::Own { .. } | Self::Refused { .. } => 0,
         }
     }
 }

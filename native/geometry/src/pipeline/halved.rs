@@ -169,7 +169,7 @@ impl PartResult {
 
     /// The same with vertices that are each other's images to the last bit, which opening has moved;
     /// where faces have no images any more it is none.
-    fn exact(mut self, axis: usize) -> Self {
+    pub(super) fn exact(mut self, axis: usize) -> Self {
         if !self.is_mirrored() {
             return self;
         }

@@ -42,6 +42,7 @@ mod meet;
 mod mirror;
 mod open;
 mod origins;
+mod own;
 mod paired;
 mod part;
 mod probe;
@@ -234,6 +235,7 @@ fn shells(
     let common = Common {
         prepared: &prepared,
         marks: &Marks::new((mesh, &laid), &prepared.frame),
+        sides: &own::sides(&prepared, mesh, settings),
         density: &Density::new(&input, &prepared.frame),
         reduced: given.reduced.filter(|_| parts.kept.is_empty()),
         settings,

@@ -44,6 +44,8 @@ pub struct Wanted<'a> {
     /// The part as somebody else reduced it.
     pub reduced: Option<&'a PolygonMesh>,
     pub marks: &'a Marks,
+    /// The sides of the polygons that came in, of a mesh that is as coarse as what is asked for.
+    pub sides: &'a Marks,
     pub density: &'a Density,
     /// What the artist drew on it.
     pub strokes: OnPart<'a>,
@@ -89,7 +91,11 @@ impl PartJob<'_> {
         let whole = || Whole::new(part, (wanted.settings, wanted.marks), &stage);
         let mut whole = clock.step("close", whole)?;
         let filling = std::mem::take(&mut whole.filling);
-        let made = if whole.is_open() {
+        let part = progress.part("", 0.02, 0.1);
+        let own = wanted.own_quads((&whole, came), clock, &part)?;
+        let made = if let Some(own) = own {
+            own
+        } else if whole.is_open() {
             wanted.open((&whole, came), clock, progress)?
         } else {
             wanted.run((whole, came), clock, progress)?

@@ -176,6 +176,7 @@ mod tests {
                         mirror: (&Role::Alone(None), None),
                         reduced: None,
                         marks: &marks,
+                        sides: &marks,
                         density: &density,
                         strokes: crate::pipeline::strokes::OnPart::none(),
                         has_tubes: false,
