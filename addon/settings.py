@@ -69,6 +69,14 @@ class Settings:
     adaptivity: _share(
         "Adaptivity", "Flowing quads: 0 makes all of one size, 1 much smaller ones where it bends"
     )
+    own_quads: BoolProperty(
+        name="Own Quads",
+        description=(
+            "Cut the mesh's own quads into finer ones where they are coarser than asked for and "
+            "good ones come of it: its loops stay. Off: new quads are found"
+        ),
+        default=True,
+    )
     density: named.density()
     guides: named.guides()
     guide_strength: EnumProperty(
@@ -246,7 +254,10 @@ class Settings:
 
 
 # Which settings only quads that flow heed.
-_OF_FLOW = {"follow_shape", "adaptivity", "density", "mirror", "guides", "guide_strength"}
+_OF_FLOW = {
+    *("follow_shape", "adaptivity", "own_quads"),
+    *("density", "mirror", "guides", "guide_strength"),
+}
 NAMES = tuple(Settings.__annotations__)
 # Settings that say how many faces an object gets.
 _OF_SIZE = {"size", "ratio", "edge_length"}
@@ -264,7 +275,7 @@ _BY_SIZE = {"FACES": "faces", "RATIO": "ratio", "EDGE": "edge_length"}
 #: The settings beside the button, and those in the sections of the panel below it.
 FIRST = ("kind", "size", "faces", "ratio", "edge_length")
 SECTIONS = {
-    "Shape": ("follow_shape", "adaptivity", "sharp_angle"),
+    "Shape": ("follow_shape", "adaptivity", "sharp_angle", "own_quads"),
     "Symmetry": ("mirror", "mirror_modifier"),
     "Guides and Density": ("guides", "guide_strength", "marked_edges", "density"),
     "Keep": (

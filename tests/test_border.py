@@ -67,6 +67,7 @@ def test_panel_and_operator_have_the_same_settings(operator: Any, scene_settings
         "primitive",
         "follow_shape",
         "adaptivity",
+        "own_quads",
         "density",
         "guides",
         "guide_strength",

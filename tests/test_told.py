@@ -211,7 +211,10 @@ def test_settings_that_change_nothing_are_grey(open_fixture: Open) -> None:
     settings.solid = False
     assert grey() == {"solid_detail"}
     settings.kind = "TRIANGLES"
-    of_flow = {"follow_shape", "adaptivity", "density", "mirror", "guides", "guide_strength"}
+    of_flow = {
+        *("follow_shape", "adaptivity", "own_quads"),
+        *("density", "mirror", "guides", "guide_strength"),
+    }
     assert grey() == of_flow | {"solid_detail"}
     settings.kind = "QUADS"
     settings.use_weld = settings.use_modifiers = False

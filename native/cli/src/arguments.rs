@@ -9,7 +9,7 @@ use orbflow_geometry::score;
 
 use crate::formats::{FileFormat, READ, WRITTEN};
 use crate::guides::Guides;
-use crate::parsers::{degrees, format, kind, mirror, n_faces, primitive, share};
+use crate::parsers::{degrees, format, kind, mirror, n_faces, on_off, primitive, share};
 use crate::parts::OfParts;
 use crate::place::Place;
 
@@ -144,6 +144,10 @@ pub struct Flow {
     /// How much smaller quads are where the surface is bent: 0 for one size
     #[arg(long, value_name = "SHARE", default_value_t = Style::default().adaptivity, value_parser = share)]
     pub adaptivity: f64,
+    /// Cut quads of a part that are coarser than what is asked for into finer ones, where good ones
+    /// come of it; off: make new ones
+    #[arg(long, value_name = "on|off", default_value = "on", value_parser = on_off())]
+    pub own_quads: bool,
 }
 
 #[derive(Args, Debug)]
@@ -265,6 +269,7 @@ impl Wanted {
                 follow_shape: self.flow.follow_shape,
                 adaptivity: self.flow.adaptivity,
             },
+            own_quads: self.flow.own_quads,
             sharp_angle: self.sharp_angle,
             mirror: self.mirror,
             seed: work.seed,

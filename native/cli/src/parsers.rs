@@ -44,6 +44,11 @@ pub fn kind() -> ValueParser {
     named(&[Kind::Triangles, Kind::Quads], Kind::name)
 }
 
+/// A parser of switches.
+pub fn on_off() -> ValueParser {
+    named(&[true, false], |is_on| if is_on { "on" } else { "off" })
+}
+
 /// Reads a share: 0 to 1.
 pub fn share(text: &str) -> Result<f64, String> {
     up_to(text, 1.0)

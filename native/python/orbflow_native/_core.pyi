@@ -222,6 +222,7 @@ def remesh(
     primitive: str | None = None,
     follow_shape: float = 0.5,
     adaptivity: float = 0.5,
+    own_quads: bool = True,
     sharp_angle: float = 40.0,
     mirror: str = "auto",
     small_parts: str = "keep",

@@ -51,7 +51,8 @@ pub struct Remeshed {
 /// Keeps the topology, the direction of the faces and their materials. `scale` is the scale of the
 /// object: faces are even in the scaled space, the result is in the space of the input.
 /// How quads flow: `follow_shape` from 0 (smooth loops) to 1 (edges along the curvature), `adaptivity`
-/// from 0 (quads of one size) to 1 (much smaller where the surface is bent).
+/// from 0 (quads of one size) to 1 (much smaller where the surface is bent). Quads of a part that are
+/// coarser than what is asked for are cut into finer ones where good ones come of it: `own_quads`.
 /// Edges at which the surface turns by more than `sharp_angle` degrees, and the `marked_edges`
 /// `(E, 2) int32`, get edges of the result along them. `density` `(V,) float32` goes from 0 to 1:
 /// where it is 1, edges of flowing quads are about half as long as where it is 0. `mirror` makes flowing quads their own image
@@ -85,7 +86,8 @@ pub struct Remeshed {
 #[pyfunction]
 #[pyo3(signature = (
     positions, loop_start, corner_vert, *, faces=2000, kind="quads", primitive=None,
-    follow_shape=0.5, adaptivity=0.5, sharp_angle=40.0, mirror="auto", small_parts="keep",
+    follow_shape=0.5, adaptivity=0.5, own_quads=true, sharp_angle=40.0, mirror="auto",
+    small_parts="keep",
     small_size=0.0, borders="keep", fill_size=None, handles="keep", seal_size=1.0, solid=false,
     solid_detail=0.4, inner="keep", weld=1e-5, strict=false, predictor="auto", weights=None,
     threads=0, seed=0, scale=None, score_samples=10_000, n_crosses=0,
@@ -94,6 +96,7 @@ pub struct Remeshed {
 ))]
 #[expect(
     clippy::too_many_arguments,
+    clippy::too_many_lines,
     clippy::fn_params_excessive_bools,
     reason = "the keywords of a Python function"
 )]
@@ -107,6 +110,7 @@ pub fn remesh<'py>(
     primitive: Option<&str>,
     follow_shape: f64,
     adaptivity: f64,
+    own_quads: bool,
     sharp_angle: f64,
     mirror: &str,
     small_parts: &str,
@@ -164,6 +168,7 @@ pub fn remesh<'py>(
             follow_shape,
             adaptivity,
         },
+        own_quads,
         sharp_angle,
         mirror: report::choice("mirror", mirror)?,
         small_parts: report::choice("small_parts", small_parts)?,

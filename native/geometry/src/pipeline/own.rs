@@ -4,7 +4,7 @@
 //! strip they keep every edge, border and handle where it is, and all loops; a flow would look for them
 //! anew. Triangles are paired first, so that it does not matter how quads were cut for a file.
 
-use std::collections::HashMap;
+mod places;
 
 use glam::DVec3;
 
@@ -19,21 +19,21 @@ use super::mirror::Role;
 use super::open::Whole;
 use super::part::{PartResult, Wanted, embed_mesh};
 use super::report::Mirrored;
-use super::rods::images;
+use super::rods::{crosses, images};
 use super::settings::{Kind, Primitive, Settings};
 use super::uncut::edges;
 use crate::deform::{Deformed, Target};
 use crate::elementary::ln;
-use crate::embed::{self, Embedded};
 use crate::measure::PolygonEdges;
-use crate::mesh::{FaceId, HalfedgeId, Id, PolygonMesh, TriangleMesh, VertexId};
-use crate::nearest::closest_on_triangle;
+use crate::mesh::{HalfedgeId, Id, PolygonMesh, VertexId};
 use crate::pair::{self, Cut, Layout, squareness};
 use crate::progress::Progress;
-use crate::sphere_map::SurfacePoint;
+use places::{places, sphere};
 
-/// The share that the count may be off, and so many quads more: a cube has 6 n².
+/// The share that the count may be off, and of few quads one in so many, but no more than a few: a cube
+/// has 6 n².
 const MOST_OFF: f64 = 0.05;
+const QUADS_PER_OFF: usize = 8;
 const FEW_OFF: usize = 4;
 /// Vertices where other than four quads meet: so many, and one in so many of the quads asked for.
 const FEW_IRREGULAR: usize = 8;
@@ -47,6 +47,8 @@ const MEAN_SQUARE: f64 = 0.75;
 /// sharp edges lie close together, which a flow could not follow.
 const MOST_UNEVEN: f64 = 0.7;
 const MOST_UNEVEN_OF_SHARP: f64 = 1.2;
+/// And where edges of one length are asked for.
+const MOST_UNEVEN_OF_EVEN: f64 = 0.15;
 
 /// The sides of polygons of four corners and more, of a mesh that has no more triangles than its quads
 /// may have; those of others are not asked for.
@@ -68,7 +70,8 @@ pub fn sides(prepared: &Prepared, input: &PolygonMesh, settings: &Settings) -> M
 
 /// So many faces are about as many as asked for.
 fn most_faces(n_asked: usize) -> usize {
-    n_asked + FEW_OFF.max((MOST_OFF * n_asked as f64) as usize)
+    let few = FEW_OFF.min(n_asked / QUADS_PER_OFF);
+    n_asked + few.max((MOST_OFF * n_asked as f64) as usize)
 }
 
 impl Wanted<'_> {
@@ -84,7 +87,8 @@ impl Wanted<'_> {
         progress: &Progress<'_>,
     ) -> Result<Option<PartResult>, Error> {
         let mesh = &whole.mesh;
-        let is_wanted = self.settings.kind == Kind::Quads
+        let is_wanted = self.settings.own_quads
+            && self.settings.kind == Kind::Quads
             && self.settings.primitive() == Primitive::Flow
             && mesh.n_faces() <= 2 * most_faces(self.n_faces)
             && self.strokes.is_empty()
@@ -119,6 +123,8 @@ impl Wanted<'_> {
         let laid = Laid::new(deformed, None, &target);
         let n_strips = fine.n_strips;
         let mut made = self.without_map((whole, came), laid, Some(Flowed::Own { n_strips }));
+        let n_crosses = self.settings.n_crosses * self.n_faces;
+        made.crosses = crosses(&made.mesh, n_crosses.div_ceil(self.settings.faces));
         if let Some(embedded) = closed {
             made.report.embedding = embedded.report;
         }
@@ -148,7 +154,7 @@ impl Wanted<'_> {
             return Ok(None);
         }
         let images = match self.mirror {
-            (Role::Whole, Some(plane)) => images(&pairs.quads, plane.axis),
+            (Role::Whole, Some(plane)) if plane.was_symmetric => images(&pairs.quads, plane.axis),
             _ => None,
         };
         if matches!(self.mirror.0, Role::Whole) && images.is_none() {
@@ -194,7 +200,9 @@ impl Wanted<'_> {
             return None;
         }
         let cut = layout.cut(&counts);
-        let most_uneven = if own.kept.is_empty() {
+        let most_uneven = if self.settings.style.evenness() > 0.0 {
+            MOST_UNEVEN_OF_EVEN
+        } else if own.kept.is_empty() {
             MOST_UNEVEN
         } else {
             MOST_UNEVEN_OF_SHARP
@@ -242,66 +250,5 @@ fn is_good(quads: &PolygonMesh, most_uneven: f64) -> bool {
     square >= MEAN_SQUARE * whole && uneven <= most_uneven * whole
 }
 
-/// A place of a mesh.
-struct Place {
-    on: SurfacePoint,
-    position: DVec3,
-}
-
-/// The place of each vertex of finer quads on the two triangles that its quad was made of.
-fn places(mesh: &TriangleMesh, (coarse, cut): (&PolygonMesh, &Cut)) -> Vec<Place> {
-    let mut faces: HashMap<[VertexId; 3], FaceId> = HashMap::with_capacity(mesh.n_faces());
-    for face in mesh.face_ids() {
-        let mut corners = mesh.face(face);
-        corners.sort_unstable();
-        faces.insert(corners, face);
-    }
-    let halves = |quad: &[VertexId]| -> Vec<FaceId> {
-        let without = (0..4).map(|i| [1, 2, 3].map(|k| quad[(i + k) % 4]));
-        let named = without.filter_map(|mut corners| {
-            corners.sort_unstable();
-            faces.get(&corners).copied()
-        });
-        named.collect()
-    };
-    let each = cut.mesh.positions().iter().zip(&cut.quads);
-    let place = |(&p, quad): (&DVec3, &Vec<FaceId>)| {
-        let closest = quad
-            .iter()
-            .map(|&face| closest_on_triangle(p, mesh.triangle(face)).of(face));
-        let closest = closest.min_by(|a, b| a.distance_squared.total_cmp(&b.distance_squared));
-        let closest = closest.expect("a quad is two triangles");
-        Place {
-            on: SurfacePoint {
-                face: closest.face,
-                weights: closest.weights,
-            },
-            position: closest.position,
-        }
-    };
-    let halves: Vec<Vec<FaceId>> = coarse.faces().map(halves).collect();
-    each.map(|(p, quad)| place((p, &halves[quad.index()])))
-        .collect()
-}
-
-/// The points of finer quads on the sphere of a part that is closed, the origin else; none where they
-/// cannot cover it.
-fn sphere(
-    closed: Option<&Embedded>,
-    quads: &PolygonMesh,
-    places: &[Place],
-    progress: &Progress<'_>,
-) -> Result<Option<Vec<DVec3>>, Error> {
-    let Some(embedded) = closed else {
-        return Ok(Some(vec![DVec3::ZERO; quads.n_vertices()]));
-    };
-    let points = places
-        .iter()
-        .map(|place| embedded.map.sphere_position(place.on));
-    let points: Vec<DVec3> = points.collect();
-    match embed::cover(quads, &points, progress) {
-        Ok(covered) => Ok(Some(covered.sphere)),
-        Err(embed::CoverError::Cancelled(cancelled)) => Err(cancelled.into()),
-        Err(_) => Ok(None),
-    }
-}
+#[cfg(test)]
+mod tests;

@@ -91,7 +91,8 @@ impl PartJob<'_> {
         let whole = || Whole::new(part, (wanted.settings, wanted.marks), &stage);
         let mut whole = clock.step("close", whole)?;
         let filling = std::mem::take(&mut whole.filling);
-        let part = progress.part("", 0.02, 0.1);
+        // It takes no time to speak of, and what comes after it where it fails starts here.
+        let part = progress.part("", 0.02, 0.02);
         let own = wanted.own_quads((&whole, came), clock, &part)?;
         let made = if let Some(own) = own {
             own

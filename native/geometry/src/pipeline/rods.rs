@@ -209,7 +209,7 @@ pub fn images(quads: &PolygonMesh, axis: usize) -> Option<Vec<VertexId>> {
 }
 
 /// At most so many crosses along the edges of quads.
-fn crosses(quads: &PolygonMesh, n: usize) -> Vec<Cross> {
+pub(super) fn crosses(quads: &PolygonMesh, n: usize) -> Vec<Cross> {
     if n == 0 {
         return Vec::new();
     }

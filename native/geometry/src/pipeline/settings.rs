@@ -147,6 +147,9 @@ pub struct Settings {
     pub primitive: Option<Primitive>,
     /// How quads flow; nothing else asks for it.
     pub style: Style,
+    /// Whether quads of a part that are coarser than what is asked for are cut into finer ones, where
+    /// good ones come of it; else new ones are made.
+    pub own_quads: bool,
     /// Edges at which the surface turns by more than so many degrees, from 0 to 180, get edges of
     /// the result along them; 180 keeps none but those that are marked.
     pub sharp_angle: f64,
@@ -190,6 +193,7 @@ impl Default for Settings {
             kind: Kind::Quads,
             primitive: None,
             style: Style::default(),
+            own_quads: true,
             sharp_angle: 40.0,
             mirror: Mirror::default(),
             small_parts: SmallParts::default(),
