@@ -195,7 +195,7 @@ fn check_damaged(bytes: &[u8], is_quads: bool) {
     let made = pipeline::remesh(Input::new(&mesh), &settings, &Solver::default(), &quiet);
     let Ok(made) = made else { return };
     assert!(made.mesh.positions().iter().all(|p| p.is_finite()));
-    let found = measure::topology(&made.mesh, &quiet).unwrap();
+    let found = measure::topology(&made.mesh, &quiet).expect("what came out is a mesh");
     let Ok(cleaned) = clean::clean(&mesh, &quiet) else {
         return;
     };
