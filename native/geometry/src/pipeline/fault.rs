@@ -66,6 +66,11 @@ pub enum Fault {
         /// Of how many.
         n_shared_lines: usize,
     },
+    /// Triangles among quads beside faces that are kept.
+    KeptTriangles {
+        /// How many.
+        n_triangles: usize,
+    },
     /// A stroke that was to be met and is not, or was not drawn.
     Guide {
         /// Which one.
@@ -130,6 +135,12 @@ impl Fault {
             } => format!(
                 "sheets no longer meet vertex by vertex along {n_left} of {n_shared_lines} lines where they did"
             ),
+            Self::KeptTriangles { n_triangles } => {
+                let (triangles, are) = of(*n_triangles, "triangle", "lies", "lie");
+                format!(
+                    "{triangles} {are} beside kept faces: quads alone cannot have as many edges there"
+                )
+            }
             Self::Guide { guide, reason } => format!("guide {guide} is lost: {reason}"),
             Self::Network { n_parts } => {
                 let (parts, _) = of(*n_parts, "part", "", "");

@@ -44,6 +44,8 @@ pub struct Wanted<'a> {
     /// The part as somebody else reduced it.
     pub reduced: Option<&'a PolygonMesh>,
     pub marks: &'a Marks,
+    /// Where something is kept beyond it: no border that is filled.
+    pub line: &'a Marks,
     pub density: &'a Density,
     /// What the artist drew on it.
     pub strokes: OnPart<'a>,
@@ -54,6 +56,7 @@ pub struct Wanted<'a> {
 }
 
 /// What has become of a part.
+#[derive(Clone)]
 pub struct PartResult {
     pub mesh: PolygonMesh,
     pub sphere: Vec<DVec3>,
@@ -86,7 +89,7 @@ impl PartJob<'_> {
             area: measure::total_area(&part),
         };
         let stage = progress.part("close", 0.0, 0.02);
-        let whole = || Whole::new(part, (wanted.settings, wanted.marks), &stage);
+        let whole = || Whole::new(part, (wanted.settings, wanted.marks, wanted.line), &stage);
         let mut whole = clock.step("close", whole)?;
         let filling = std::mem::take(&mut whole.filling);
         let made = if whole.is_open() {
