@@ -77,6 +77,9 @@ pub struct Remeshed {
 /// `orbflow train` wrote, or its path. `n_crosses` is how many crosses of the field to tell at most.
 /// `guides` are lines near the surface that edges of flowing quads follow; what became of each is in
 /// the report's `guides`, and a lost exact one is among its `warnings`.
+/// `keep_faces` `(F,) bool` are faces that are kept as they are: they come last, in order, bit for bit,
+/// and the new ones join them without a gap; `faces` counts them too. The report's `kept_faces` says how
+/// they were joined.
 /// `score_samples` is how many points of each surface the score looks at; 0 makes no score.
 /// `progress` is called on the calling thread, at most 20 times a second, with the name of the step
 /// and the share of the work that is done. The same input and settings give the same bytes.
@@ -90,7 +93,7 @@ pub struct Remeshed {
     solid_detail=0.4, inner="keep", weld=1e-5, strict=false, predictor="auto", weights=None,
     threads=0, seed=0, scale=None, score_samples=10_000, n_crosses=0,
     material_index=None, marked_edges=None, carried_edges=None, cut_edges=None, density=None,
-    reduced=None, guides=None, progress=None, cancel=None,
+    reduced=None, guides=None, keep_faces=None, progress=None, cancel=None,
 ))]
 #[expect(
     clippy::too_many_arguments,
@@ -134,6 +137,7 @@ pub fn remesh<'py>(
     density: Option<&Bound<'py, PyAny>>,
     reduced: Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
     guides: Option<Vec<PyRef<'py, Guide>>>,
+    keep_faces: Option<&Bound<'py, PyAny>>,
     progress: Option<Bound<'py, PyAny>>,
     cancel: Option<&CancelToken>,
 ) -> PyResult<Remeshed> {
@@ -154,6 +158,8 @@ pub fn remesh<'py>(
         .map(|(points, triangles)| arrays::triangles(&points, &triangles, scale))
         .transpose()?;
     let guides = strokes(&guides.unwrap_or_default(), scale);
+    let keep = keep_faces.map(|flags| arrays::column(flags, "keep_faces", "(F,)"));
+    let keep: Option<Vec<bool>> = keep.transpose()?;
     let settings = Settings {
         faces,
         kind: report::choice("kind", kind)?,
@@ -190,6 +196,7 @@ pub fn remesh<'py>(
         carried: carried.as_deref().unwrap_or_default(),
         cuts: cuts.as_deref(),
         guides: &guides,
+        keep_faces: keep.as_deref(),
     };
     let job = Job::new(progress, cancel).scaled(scale);
     let mut remeshed = job.run(py, |progress| {

@@ -16,6 +16,8 @@ const COSTS: [f64; 10] = [0.0, 0.0, 40.0, 1.0, 42.0, 3.0, 46.0, 6.0, 52.0, 10.0]
 const COST_OF_TRIANGLE: f64 = 0.7;
 /// What a vertex costs that has one face and loses the border: it gets two in all.
 const COST_OF_EAR: f64 = 20.0;
+/// What a vertex costs that has a right angle, or a third of two in triangles, too many or too few.
+const COST_OF_ANGLE: f64 = 0.5;
 /// What a place off the border costs where nothing stays, as a share.
 const FREE: f64 = 0.05;
 /// How many pairs are tried to begin with, to each side of the nearest.
@@ -28,8 +30,8 @@ const N_ASKED: usize = 12;
 /// A loop of vertices.
 pub struct Chain<'a> {
     pub places: Vec<DVec3>,
-    /// Which of them have one face.
-    pub is_ear: Vec<bool>,
+    /// How many faces each of them has.
+    pub valences: Vec<usize>,
     pub are_quads: bool,
     /// Whether two of them are the ends of an edge.
     pub is_joined: &'a dyn Fn(usize, usize) -> bool,
@@ -197,6 +199,14 @@ impl Table<'_> {
         p.distance_squared(q) / (self.edge * self.edge).max(f64::MIN_POSITIVE)
     }
 
+    /// What it costs that a vertex has other angles than the border wants there, with more faces.
+    fn lack(&self, i: usize, j: usize, more: f64) -> f64 {
+        let wanted = if self.chain.are_quads { 90.0 } else { 60.0 };
+        let angle = self.border.angles[self.point(j)].to_degrees() / wanted;
+        let off = self.chain.valences[self.made(i)] as f64 + more - angle;
+        COST_OF_ANGLE * off * off
+    }
+
     /// The cheapest step to a pair.
     fn best(&self, (i, j): (usize, usize), costs: &[f64]) -> (f64, Step) {
         let m = self.border.points.len();
@@ -210,15 +220,19 @@ impl Table<'_> {
         };
         let off = self.off(i, j);
         if j > 0 && i > 0 && self.is_held_before(j) {
+            let off = off + self.lack(i, j, 0.0);
             take([1, 1], off);
             for k in 2..COSTS.len() {
                 if k <= j && self.is_held_before(j + 1 - k) && self.are_held(j, k) {
                     take([1, k as u8], off + self.cost(k));
                 }
                 if k <= i && !(self.chain.is_joined)(self.made(i - k), self.made(i)) {
-                    let ears = (i + 1 - k..i).filter(|&i| self.chain.is_ear[self.made(i)]);
-                    let ears = ears.count() as f64 * COST_OF_EAR;
-                    take([k as u8, 1], off + self.cost(k) + ears);
+                    let is_ear = |&i: &usize| self.chain.valences[self.made(i)] == 1;
+                    let ears = (i + 1 - k..i).filter(is_ear).count() as f64 * COST_OF_EAR;
+                    // Both ends get a face more.
+                    let more = |i, j| self.lack(i, j, 1.0) - self.lack(i, j, 0.0);
+                    let more = more(i, j) + more(i - k, j - 1);
+                    take([k as u8, 1], off + self.cost(k) + ears + more);
                 }
             }
             return best;

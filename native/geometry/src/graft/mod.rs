@@ -37,6 +37,8 @@ pub struct Border {
     pub points: Vec<DVec3>,
     /// Whether something stays beyond the edge from each point to the next.
     pub is_held: Vec<bool>,
+    /// How wide what was remeshed is at each point, in radians.
+    pub angles: Vec<f64>,
     /// Which vertex of what stays is there, if one is; one that comes twice is one vertex in the end.
     pub names: Vec<Option<usize>>,
 }
@@ -206,7 +208,7 @@ impl Grafting {
     ) -> Result<Result<Counts, String>, Cancelled> {
         let chain = Chain {
             places: made.iter().map(|v| self.positions[v.index()]).collect(),
-            is_ear: made.iter().map(|&v| sheet.n_at(v) == 1).collect(),
+            valences: made.iter().map(|&v| sheet.n_at(v)).collect(),
             are_quads: sheet.has_quads(),
             is_joined: &|a, b| sheet.is_edge([made[a], made[b]]),
         };

@@ -71,6 +71,11 @@ pub enum Fault {
         /// How many.
         n_triangles: usize,
     },
+    /// Faces are kept of a mesh that is not symmetric in the named plane.
+    KeptUnlikeImage {
+        /// How far the others are from their image, in % of the diagonal.
+        off_pct: f64,
+    },
     /// A stroke that was to be met and is not, or was not drawn.
     Guide {
         /// Which one.
@@ -141,6 +146,10 @@ impl Fault {
                     "{triangles} {are} beside kept faces: quads alone cannot have as many edges there"
                 )
             }
+            Self::KeptUnlikeImage { off_pct } => format!(
+                "nothing was made symmetric: what is not kept is not (its sides differ by up to \
+                 {off_pct:.1} % of its size), and made so it would not join what is kept"
+            ),
             Self::Guide { guide, reason } => format!("guide {guide} is lost: {reason}"),
             Self::Network { n_parts } => {
                 let (parts, _) = of(*n_parts, "part", "", "");

@@ -239,6 +239,11 @@ fn shells(
     };
     let facing = || Prepared::facing(cleaned, &input, settings.mirror(), &stage);
     let (prepared, plane) = clock.step("clean", facing)?;
+    // A side that is replaced by the other's image would not join what is kept.
+    let (plane, unlike) = match (region, plane) {
+        (Some(_), Some(plane)) if !plane.was_symmetric => (None, Some(plane.off_pct)),
+        _ => (plane, None),
+    };
     let line = region.map(|region| region.marks(mesh, &prepared.frame));
     let drawn = || Strokes::new(&input, &prepared, (plane, settings), &stage);
     let strokes = clock.step("clean", drawn)?;
@@ -256,7 +261,10 @@ fn shells(
     };
     let each = common.run(&mut clock, progress)?;
     let wanted = (mesh, region, settings);
-    let (prepared, joined) = each.join(prepared, &mut parts, wanted, progress)?;
+    let (prepared, mut joined) = each.join(prepared, &mut parts, wanted, progress)?;
+    if let Some(kept) = &mut joined.kept_faces {
+        kept.plane_off_pct = unlike;
+    }
     let made = Made {
         given,
         input,

@@ -14,6 +14,7 @@ use super::frame::{Frame, Prepared, bits};
 use super::join::Joined;
 use super::kept::count;
 use super::marks::Marks;
+use super::open;
 use super::report::Mirrored;
 use super::settings::MIN_FACES;
 use super::split::components;
@@ -21,8 +22,8 @@ use super::{Error, Input, Remeshed, Settings, shells};
 use crate::deform::{self, Target, is_inverted};
 use crate::embed::OffsetPredictor;
 use crate::graft::{self, Border, Counts, Grafted, Part};
-use crate::measure::PolygonEdges;
-use crate::mesh::{FaceId, FaceMap, Id, PolygonMesh, TriangleMesh, VertexId};
+use crate::measure::{PolygonEdges, corner_angle};
+use crate::mesh::{FaceId, FaceMap, Id, PolygonMesh, TriangleMesh, VertexId, VertexMap};
 use crate::progress::{Cancelled, Progress};
 
 /// Rings of faces beside what is kept whose vertices find better places.
@@ -48,7 +49,7 @@ pub struct Region {
 }
 
 /// What became of faces that were to be kept.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Serialize)]
+#[derive(Clone, Copy, PartialEq, Debug, Default, Serialize)]
 pub struct KeptFaces {
     /// How many there are.
     pub n_faces: usize,
@@ -61,6 +62,9 @@ pub struct KeptFaces {
     pub n_triangles: usize,
     /// How many edges of theirs are beside something that stayed as it came.
     pub n_stayed: usize,
+    /// How far what is not kept is from its own image in the plane that was named, in % of the
+    /// diagonal, where it was not made so because of what is kept.
+    pub plane_off_pct: Option<f64>,
 }
 
 /// Remeshes what is not kept.
@@ -191,7 +195,8 @@ impl Region {
             n_edges: counts.n_edges,
             n_met: counts.n_met,
             n_triangles: counts.n_triangles,
-            n_stayed: self.line.len() - n_held,
+            n_stayed: self.line.len().saturating_sub(n_held),
+            plane_off_pct: None,
         });
         for (&name, &v) in &grafted.at {
             joined.met.vertices.insert(places.keys[name], v);
@@ -232,6 +237,7 @@ impl Places {
     /// The borders of a part; counts those of their edges beyond which something is kept.
     fn borders(&self, part: &TriangleMesh, n_held: &mut usize) -> Vec<Border> {
         let is_line = self.marks.on(part);
+        let angles = angles(part);
         let border = |border: Vec<_>| {
             let points = border.iter().map(|&h| part.position(part.origin(h)));
             let points: Vec<_> = points.collect();
@@ -240,6 +246,7 @@ impl Places {
             let name = |p: &_| self.names.get(&bits(*p)).copied();
             Border {
                 names: points.iter().map(name).collect(),
+                angles: border.iter().map(|&h| angles[part.origin(h)]).collect(),
                 points,
                 is_held,
             }
@@ -304,7 +311,8 @@ fn settled(
         *is_fixed |= !is_near;
     }
     let smooth = smoothed((mesh, &is_fixed), target, progress)?;
-    deform::settle(&smooth, (&is_fixed, ENOUGH), target, progress)
+    let settled = deform::settle(&smooth, (&is_fixed, ENOUGH), target, progress)?;
+    open::untangled(&settled, target, progress)
 }
 
 /// Vertices in the middle of their neighbours, on the surface.
@@ -333,6 +341,17 @@ fn smoothed(
 
 fn ids(mesh: &PolygonMesh) -> impl Iterator<Item = VertexId> + use<> {
     (0..mesh.n_vertices()).map(VertexId::from_index)
+}
+
+/// The angle of all faces round every vertex.
+fn angles(part: &TriangleMesh) -> VertexMap<f64> {
+    let mut angles = VertexMap::filled(part.n_vertices(), 0.0);
+    for face in part.face_ids() {
+        for (i, v) in part.face(face).into_iter().enumerate() {
+            angles[v] += corner_angle(part.triangle(face), i);
+        }
+    }
+    angles
 }
 
 /// The first vertex at the place of each.
@@ -407,6 +426,12 @@ impl KeptFaces {
         (self.n_triangles > 0).then_some(Fault::KeptTriangles {
             n_triangles: self.n_triangles,
         })
+    }
+
+    /// What is wrong with the symmetry that was named.
+    pub fn mirror_fault(self) -> Option<Fault> {
+        let off_pct = self.plane_off_pct?;
+        Some(Fault::KeptUnlikeImage { off_pct })
     }
 
     /// What became of them, in a line.

@@ -176,6 +176,7 @@ mod tests {
                         mirror: (&Role::Alone(None), None),
                         reduced: None,
                         marks: &marks,
+                        line: &marks,
                         density: &density,
                         strokes: crate::pipeline::strokes::OnPart::none(),
                         has_tubes: false,

@@ -84,6 +84,7 @@ pub(super) fn warnings(
         made.lines(settings),
         made.rejoined.and_then(Rejoined::fault),
         made.kept_faces.and_then(KeptFaces::fault),
+        made.kept_faces.and_then(KeptFaces::mirror_fault),
         made.network(),
     ];
     Ok(faults.into_iter().flatten().map(Warning::from).collect())

@@ -46,6 +46,7 @@ use crate::mesh::{FaceMap, HalfedgeMap, TriangleMesh, VertexId, VertexMap};
 pub use closing::{Closing, Small};
 use puncture::Puncture;
 pub use reopen::Lines;
+pub use mend::untangled;
 pub use rings::{Loose, Regions};
 pub use whole::Whole;
 
