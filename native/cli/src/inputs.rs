@@ -97,7 +97,10 @@ pub fn faces(path: &Path, n_faces: usize) -> Result<Vec<bool>, Error> {
                 return Err(not_faces());
             };
             let named = are_named.get_mut(first..last.saturating_add(1));
-            named.filter(|named| !named.is_empty()).ok_or_else(not_faces)?.fill(true);
+            named
+                .filter(|named| !named.is_empty())
+                .ok_or_else(not_faces)?
+                .fill(true);
         }
     }
     Ok(are_named)

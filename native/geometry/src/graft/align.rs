@@ -122,7 +122,11 @@ impl Chain<'_> {
         let off = |&i: &usize| self.places[i].distance_squared(border.points[first]);
         let nearest = (0..n).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0);
         let is_large = n * border.points.len() > LARGE;
-        let beside = if is_large { 0 } else { N_BESIDE.min((n - 1) / 2) };
+        let beside = if is_large {
+            0
+        } else {
+            N_BESIDE.min((n - 1) / 2)
+        };
         let mut best: Option<Aligned> = None;
         for k in 0..=2 * beside {
             let from = (nearest + n + k - beside) % n;
@@ -195,7 +199,10 @@ impl Table<'_> {
     }
 
     fn off(&self, i: usize, j: usize) -> f64 {
-        let [p, q] = [self.chain.places[self.made(i)], self.border.points[self.point(j)]];
+        let [p, q] = [
+            self.chain.places[self.made(i)],
+            self.border.points[self.point(j)],
+        ];
         p.distance_squared(q) / (self.edge * self.edge).max(f64::MIN_POSITIVE)
     }
 
@@ -244,7 +251,10 @@ impl Table<'_> {
             let is_named = self.border.names[self.point(j)].is_some();
             if !self.is_held_after(j) && !is_named {
                 let [a, b] = [j - 1, j].map(|j| self.border.points[self.point(j)]);
-                take([0, 1], FREE * off * a.distance(b) / self.edge.max(f64::MIN_POSITIVE));
+                take(
+                    [0, 1],
+                    FREE * off * a.distance(b) / self.edge.max(f64::MIN_POSITIVE),
+                );
             }
         }
         if i > 0 && (!self.is_held_before(j) || !self.is_held_after(j)) {
@@ -259,9 +269,10 @@ impl Table<'_> {
     }
 
     fn cost(&self, n: usize) -> f64 {
-        match self.chain.are_quads {
-            true => COSTS[n],
-            false => COST_OF_TRIANGLE * (n - 1) as f64,
+        if self.chain.are_quads {
+            COSTS[n]
+        } else {
+            COST_OF_TRIANGLE * (n - 1) as f64
         }
     }
 

@@ -15,6 +15,8 @@
 mod align;
 mod parity;
 mod sheet;
+#[cfg(test)]
+mod tests;
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
@@ -105,14 +107,20 @@ pub fn graft(
 ) -> Result<Grafted, Cancelled> {
     let mut grafting = Grafting {
         positions: mesh.positions().to_vec(),
-        from: (0..mesh.n_vertices()).map(|i| [VertexId::from_index(i); 2]).collect(),
+        from: (0..mesh.n_vertices())
+            .map(|i| [VertexId::from_index(i); 2])
+            .collect(),
         loose: Vec::new(),
         held: Vec::new(),
     };
     let (mut sheets, mut told) = (Vec::new(), Vec::new());
     let mut faces = mesh.faces();
     for part in parts {
-        let own: Vec<Vec<VertexId>> = faces.by_ref().take(part.n_faces).map(<[_]>::to_vec).collect();
+        let own: Vec<Vec<VertexId>> = faces
+            .by_ref()
+            .take(part.n_faces)
+            .map(<[_]>::to_vec)
+            .collect();
         let is_touched = part.borders.iter().any(Border::is_of_use);
         let mut sheet = Sheet::new(own.clone());
         let found = if is_touched {
@@ -123,7 +131,7 @@ pub fn graft(
         sheets.push(if found.is_ok() { sheet.faces } else { own });
         told.push(found);
     }
-    Ok(grafting.joined(mesh.n_vertices(), sheets, told))
+    Ok(grafting.joined(mesh.n_vertices(), &sheets, told))
 }
 
 impl Border {
@@ -134,7 +142,11 @@ impl Border {
 
     fn length(&self) -> f64 {
         let next = self.points.iter().cycle().skip(1);
-        self.points.iter().zip(next).map(|(a, b)| a.distance(*b)).sum()
+        self.points
+            .iter()
+            .zip(next)
+            .map(|(a, b)| a.distance(*b))
+            .sum()
     }
 }
 
@@ -191,7 +203,8 @@ impl Grafting {
                 owners[k].clone_from(&loops[i]);
             }
         }
-        let lacks = |(border, made): (&Border, &Vec<VertexId>)| border.is_of_use() && made.is_empty();
+        let lacks =
+            |(border, made): (&Border, &Vec<VertexId>)| border.is_of_use() && made.is_empty();
         if borders.iter().zip(&owners).any(lacks) {
             return Err("a border of it is no longer there".to_owned());
         }
@@ -255,7 +268,7 @@ impl Grafting {
     fn joined(
         self,
         n_came: usize,
-        sheets: Vec<Vec<Vec<VertexId>>>,
+        sheets: &[Vec<Vec<VertexId>>],
         mut told: Vec<Result<Counts, String>>,
     ) -> Grafted {
         let mut groups = Groups::new(self.positions.len());
@@ -316,7 +329,9 @@ fn spoiled(faces: &[Vec<VertexId>], groups: &mut Groups) -> Option<String> {
     }
     match (n_lost, n_crowded) {
         (0, 0) => None,
-        (0, n) => Some(format!("{n} edges would have too many faces beside what is kept")),
+        (0, n) => Some(format!(
+            "{n} edges would have too many faces beside what is kept"
+        )),
         (n, _) => Some(format!("{n} faces would lose a corner beside what is kept")),
     }
 }

@@ -104,7 +104,10 @@ impl Sheet {
         let mut side = [a, b];
         loop {
             let face = &self.faces[self.sides[&side]];
-            let at = face.iter().position(|&v| v == b).expect("an end of a side of the face");
+            let at = face
+                .iter()
+                .position(|&v| v == b)
+                .expect("an end of a side of the face");
             let next = [b, face[(at + 1) % face.len()]];
             if !self.sides.contains_key(&[next[1], b]) {
                 return next;
@@ -137,7 +140,9 @@ impl Grafting {
         while along.len() - 1 < n {
             // The longest first; a face of its own for each.
             let length = |i: &usize| self.place(along[*i]).distance(self.place(along[*i + 1]));
-            let first = (0..along.len() - 1).rev().max_by(|i, k| length(i).total_cmp(&length(k)));
+            let first = (0..along.len() - 1)
+                .rev()
+                .max_by(|i, k| length(i).total_cmp(&length(k)));
             let at = first.unwrap_or(0);
             let side = [along[at], along[at + 1]];
             let Some(face) = sheet.left(side) else {
@@ -150,12 +155,19 @@ impl Grafting {
                 counts.n_triangles += usize::from(is_quad);
                 self.cut_in_two(sheet, face, side)
             };
-            along.splice(at + 1..at + 1, new);
+            let rest = along.split_off(at + 1);
+            along.extend(new);
+            along.extend(rest);
         }
         along
     }
 
-    fn cut_in_three(&mut self, sheet: &mut Sheet, face: usize, [a, b]: [VertexId; 2]) -> Vec<VertexId> {
+    fn cut_in_three(
+        &mut self,
+        sheet: &mut Sheet,
+        face: usize,
+        [a, b]: [VertexId; 2],
+    ) -> Vec<VertexId> {
         let [p, q, r, s] = turned(&sheet.faces[face], a);
         debug_assert_eq!((p, q), (a, b));
         let [low, high] = [[p, q], [s, r]].map(|ends| ends.map(|v| self.place(v)));
@@ -173,7 +185,12 @@ impl Grafting {
     }
 
     /// A triangle at the first half.
-    fn cut_in_two(&mut self, sheet: &mut Sheet, face: usize, [a, b]: [VertexId; 2]) -> Vec<VertexId> {
+    fn cut_in_two(
+        &mut self,
+        sheet: &mut Sheet,
+        face: usize,
+        [a, b]: [VertexId; 2],
+    ) -> Vec<VertexId> {
         let middle = self.add(self.place(a).midpoint(self.place(b)), [a, b]);
         let mut corners = sheet.faces[face].clone();
         let at = corners.iter().position(|&v| v == a).unwrap_or(0);
@@ -215,7 +232,8 @@ impl Grafting {
         for face in sheet.around(v) {
             let corners = &sheet.faces[face];
             for &u in corners.iter().filter(|&&u| u != v && sheet.is_edge([u, v])) {
-                let is_inner = sheet.sides.contains_key(&[u, v]) && sheet.sides.contains_key(&[v, u]);
+                let is_inner =
+                    sheet.sides.contains_key(&[u, v]) && sheet.sides.contains_key(&[v, u]);
                 if is_inner {
                     sum += self.place(u);
                     n += 1.0;

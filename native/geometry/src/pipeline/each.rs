@@ -178,7 +178,9 @@ impl Each {
                 Err(failed) => failed,
             };
             is_left = vec![true; made.len()];
-            failed.iter().for_each(|&(at, _)| is_left[at] = false);
+            for &(at, _) in &failed {
+                is_left[at] = false;
+            }
             let mut left = is_left.iter();
             made.retain(|_| left.next() == Some(&true));
         }

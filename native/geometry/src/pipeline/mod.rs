@@ -214,7 +214,12 @@ fn run(
     if settings.solid {
         return solid::run(given, settings, predictor, progress);
     }
-    shells((given, None, Clock::default()), settings, predictor, progress)
+    shells(
+        (given, None, Clock::default()),
+        settings,
+        predictor,
+        progress,
+    )
 }
 
 /// Every part of a mesh as it is, but for faces that are kept.
@@ -253,7 +258,9 @@ fn shells(
         marks: &Marks::new((mesh, &laid), &prepared.frame),
         line: &line.unwrap_or_default(),
         density: &Density::new(&input, &prepared.frame),
-        reduced: given.reduced.filter(|_| parts.kept.is_empty() && region.is_none()),
+        reduced: given
+            .reduced
+            .filter(|_| parts.kept.is_empty() && region.is_none()),
         settings,
         plane,
         predictor,

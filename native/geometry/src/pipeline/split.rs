@@ -14,9 +14,7 @@ use super::region::Region;
 use super::stay::some_faces;
 use super::{Error, Inner, Input, Settings, diagnosis, inner, small};
 use crate::clean::{Apart, Cleaned, SharedLine, SharedPoint};
-use crate::mesh::{
-    FaceId, FaceMap, Id, PolygonMesh, TriangleMesh, VertexId, VertexMap, bounds,
-};
+use crate::mesh::{FaceId, FaceMap, Id, PolygonMesh, TriangleMesh, VertexId, VertexMap, bounds};
 use crate::progress::{Cancelled, Progress};
 
 /// The parts of a mesh.
@@ -274,8 +272,7 @@ impl Parts {
     pub fn staying(&self, mesh: &PolygonMesh) -> Vec<FaceId> {
         let stays = |part: u32| self.stays(part as usize);
         let is_kept = |face: &FaceId| self.region.binary_search(face).is_ok();
-        let is_staying =
-            |face: &FaceId| self.part_of[*face].is_some_and(stays) || is_kept(face);
+        let is_staying = |face: &FaceId| self.part_of[*face].is_some_and(stays) || is_kept(face);
         mesh.face_ids().filter(is_staying).collect()
     }
 

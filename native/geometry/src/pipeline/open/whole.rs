@@ -125,7 +125,12 @@ mod tests {
 
     fn whole(mesh: &TriangleMesh, settings: &Settings) -> Whole {
         let nothing = Marks::default();
-        Whole::new(mesh.clone(), (settings, &nothing, &nothing), &Progress::none()).unwrap()
+        Whole::new(
+            mesh.clone(),
+            (settings, &nothing, &nothing),
+            &Progress::none(),
+        )
+        .unwrap()
     }
 
     /// A torus of wavy rings, so that no edges go straight round its tube.
