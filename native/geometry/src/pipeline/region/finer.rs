@@ -12,7 +12,7 @@ use crate::progress::{Cancelled, Progress};
 
 /// Up to how many edges of the new mesh from the line quads are smaller.
 const REACH: f64 = 4.0;
-/// Where no edge of the line wants more, nothing is asked for.
+/// Where edges of the line want no more in the mean, nothing is asked for.
 const LEAST: f64 = 0.25;
 
 impl Region {
@@ -38,8 +38,8 @@ impl Region {
             let ratio = edge / a.distance(b).max(f64::MIN_POSITIVE);
             (ratio - 1.0).clamp(0.0, 1.0)
         };
-        let most = line.iter().map(|&piece| wish(piece)).fold(0.0, f64::max);
-        if !(LEAST..=1.0).contains(&most) {
+        let mean = line.iter().map(|&piece| wish(piece)).sum::<f64>() / line.len() as f64;
+        if !(LEAST..=1.0).contains(&mean) {
             return Ok(None);
         }
         let pieces: Vec<_> = line.iter().map(|&[a, b]| [a, b, b]).collect();
