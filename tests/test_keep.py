@@ -1,4 +1,4 @@
-"""Faces that are kept: by the wheel's flags, by what an object offers, by selection in edit mode."""
+"""Faces that are kept: by flags, by what an object offers, by selection in edit mode."""
 
 from typing import Any
 
@@ -110,15 +110,23 @@ def test_a_region_that_is_not_there_is_said_with_those_that_are(open_fixture: Op
     assert len(first.data.polygons) == 1280
 
 
+def choose(thing: Any, faces: set[int]) -> None:  # noqa: ANN401
+    """Selects faces in edit mode."""
+    bpy.context.view_layer.objects.active = thing
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_mode(type="FACE")
+    bpy.ops.mesh.select_all(action="DESELECT")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    for face in thing.data.polygons:
+        face.select = face.index in faces
+    bpy.ops.object.mode_set(mode="EDIT")
+
+
 def test_in_edit_mode_the_selected_faces_alone_are_remeshed(open_fixture: Open) -> None:
     first = open_fixture("03")
     chosen = set(top(first.data))
     before = [each for i, each in enumerate(places(first.data)) if i not in chosen]
-    for face in first.data.polygons:
-        face.select = face.index in chosen
-    bpy.context.view_layer.objects.active = first
-    bpy.ops.object.mode_set(mode="EDIT")
-    bpy.ops.mesh.select_mode(type="FACE")
+    choose(first, chosen)
     assert press.orbflow_remesh(faces=80) == {"FINISHED"}
     assert bpy.context.mode == "EDIT_MESH"
     bpy.ops.object.mode_set(mode="OBJECT")
