@@ -9,9 +9,13 @@ use glam::DVec3;
 use super::Border;
 use crate::progress::{Cancelled, Progress};
 
-/// What a block of one edge against so many costs, in squares of an edge: a place off by one edge
-/// is worth about two vertices of another valence.
-const COSTS: [f64; 10] = [0.0, 0.0, 40.0, 1.0, 42.0, 3.0, 46.0, 6.0, 52.0, 10.0];
+/// What a block with a triangle costs more, in squares of an edge. One of one edge against three costs
+/// 1, against five 3, against seven 6: a place off by one edge is worth about two vertices of another
+/// valence.
+const COST_OF_ODD: f64 = 40.0;
+/// Against how many edges one may stand where counts are alike, and at most.
+const USUAL: usize = 9;
+const MOST: usize = 41;
 /// The same in triangles.
 const COST_OF_TRIANGLE: f64 = 0.7;
 /// What a vertex costs that has one face and loses the border: it gets two in all.
@@ -152,6 +156,7 @@ impl Chain<'_> {
             border,
             from,
             edge: border.length() / n as f64,
+            most: (2 * n.max(m) / n.min(m)).clamp(USUAL, MOST),
         };
         let mut costs = vec![f64::INFINITY; (n + 1) * (m + 1)];
         let mut steps: Vec<Step> = vec![[0, 0]; costs.len()];
@@ -177,6 +182,8 @@ struct Table<'a> {
     from: [usize; 2],
     /// The mean edge of the loop.
     edge: f64,
+    /// Against how many edges one may stand.
+    most: usize,
 }
 
 impl Table<'_> {
@@ -229,7 +236,7 @@ impl Table<'_> {
         if j > 0 && i > 0 && self.is_held_before(j) {
             let off = off + self.lack(i, j, 0.0);
             take([1, 1], off);
-            for k in 2..COSTS.len() {
+            for k in 2..=self.most {
                 if k <= j && self.is_held_before(j + 1 - k) && self.are_held(j, k) {
                     take([1, k as u8], off + self.cost(k));
                 }
@@ -270,7 +277,9 @@ impl Table<'_> {
 
     fn cost(&self, n: usize) -> f64 {
         if self.chain.are_quads {
-            COSTS[n]
+            let pairs = ((n - 1) / 2) as f64;
+            let odd = if n % 2 == 0 { COST_OF_ODD } else { 0.0 };
+            odd + pairs * (pairs + 1.0) / 2.0
         } else {
             COST_OF_TRIANGLE * (n - 1) as f64
         }

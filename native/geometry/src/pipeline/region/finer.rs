@@ -13,7 +13,7 @@ use crate::progress::{Cancelled, Progress};
 /// Up to how many edges of the new mesh from the line quads are smaller.
 const REACH: f64 = 4.0;
 /// Where edges of the line want no more in the mean, nothing is asked for.
-const LEAST: f64 = 0.25;
+const LEAST: f64 = 0.5;
 
 impl Region {
     /// The density of the input with more of it beside what is kept, where its edges are shorter than

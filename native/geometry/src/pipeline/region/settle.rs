@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::deform::{self, Target};
+use crate::deform::{self, Target, is_inverted};
 use crate::graft::Grafted;
 use crate::measure::PolygonEdges;
 use crate::mesh::{Id, PolygonMesh, VertexId};
@@ -25,11 +25,12 @@ pub fn settled(
 ) -> Result<PolygonMesh, Cancelled> {
     let mesh = &grafted.mesh;
     let mut is_fixed = PolygonEdges::new(mesh, progress)?.border_vertices(mesh.n_vertices());
-    for v in features.iter().flatten() {
-        is_fixed[grafted.name[*v].index()] = true;
-    }
     for &v in grafted.at.values() {
         is_fixed[v.index()] = true;
+    }
+    let mut is_bound = is_fixed.clone();
+    for v in features.iter().flatten() {
+        is_bound[grafted.name[*v].index()] = true;
     }
     let mut is_near = vec![false; mesh.n_vertices()];
     for v in grafted.at.values().chain(&grafted.loose) {
@@ -44,12 +45,37 @@ pub fn settled(
             is_near[v.index()] = true;
         }
     }
-    for (is_fixed, is_near) in is_fixed.iter_mut().zip(&is_near) {
-        *is_fixed |= !is_near;
+    for (i, is_near) in is_near.iter().enumerate() {
+        is_fixed[i] |= !is_near;
+        is_bound[i] |= !is_near;
     }
-    let smooth = smoothed((mesh, &is_fixed), target, progress)?;
-    let settled = deform::settle(&smooth, (&is_fixed, ENOUGH), target, progress)?;
+    let settled = settled_where((mesh, &is_bound), target, progress)?;
+    let n_inverted = n_inverted(&settled);
+    if n_inverted == 0 || is_bound == is_fixed {
+        return Ok(settled);
+    }
+    // Lines that end beside what is kept may leave no room.
+    let other = settled_where((mesh, &is_fixed), target, progress)?;
+    Ok(if self::n_inverted(&other) < n_inverted {
+        other
+    } else {
+        settled
+    })
+}
+
+/// Vertices that are not fixed at better places.
+fn settled_where(
+    (mesh, is_fixed): (&PolygonMesh, &[bool]),
+    target: &Target,
+    progress: &Progress<'_>,
+) -> Result<PolygonMesh, Cancelled> {
+    let smooth = smoothed((mesh, is_fixed), target, progress)?;
+    let settled = deform::settle(&smooth, (is_fixed, ENOUGH), target, progress)?;
     open::untangled(&settled, target, progress)
+}
+
+fn n_inverted(mesh: &PolygonMesh) -> usize {
+    mesh.faces().filter(|face| is_inverted(mesh, face)).count()
 }
 
 /// Vertices in the middle of their neighbours, on the surface.
