@@ -278,7 +278,11 @@ impl Table<'_> {
     fn cost(&self, n: usize) -> f64 {
         if self.chain.are_quads {
             let pairs = ((n - 1) / 2) as f64;
-            let odd = if n % 2 == 0 { COST_OF_ODD } else { 0.0 };
+            let odd = if n.is_multiple_of(2) {
+                COST_OF_ODD
+            } else {
+                0.0
+            };
             odd + pairs * (pairs + 1.0) / 2.0
         } else {
             COST_OF_TRIANGLE * (n - 1) as f64
