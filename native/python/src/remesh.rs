@@ -158,14 +158,11 @@ pub fn remesh<'py>(
         .map(|(points, triangles)| arrays::triangles(&points, &triangles, scale))
         .transpose()?;
     let guides = strokes(&guides.unwrap_or_default(), scale);
-    let keep = keep_faces.map(|flags| arrays::column(flags, "keep_faces", "(F,)"));
-    let keep: Option<Vec<bool>> = keep.transpose()?;
+    let keep = keep_faces.map(flags).transpose()?;
     let settings = Settings {
         faces,
         kind: report::choice("kind", kind)?,
-        primitive: primitive
-            .map(|word| report::choice("primitive", word))
-            .transpose()?,
+        primitive: self::primitive(primitive)?,
         style: Style {
             follow_shape,
             adaptivity,
@@ -208,6 +205,15 @@ pub fn remesh<'py>(
 
 fn materials(array: &Bound<'_, PyAny>) -> PyResult<Vec<i32>> {
     arrays::column(array, "material_index", "(F,)")
+}
+
+fn flags(array: &Bound<'_, PyAny>) -> PyResult<Vec<bool>> {
+    arrays::column(array, "keep_faces", "(F,)")
+}
+
+fn primitive(word: Option<&str>) -> PyResult<Option<pipeline::Primitive>> {
+    word.map(|word| report::choice("primitive", word))
+        .transpose()
 }
 
 fn strokes(guides: &[PyRef<'_, Guide>], scale: DVec3) -> Vec<Stroke> {
