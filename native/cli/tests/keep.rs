@@ -48,7 +48,7 @@ fn named_faces_are_in_the_result_as_they_were() {
 }
 
 #[test]
-fn numbers_that_name_no_faces_are_wrong_usage() {
+fn numbers_that_name_no_faces_are_refused() {
     let folder = Folder::new();
     let input = folder.write("ball.obj", &ball(""));
     let output = folder.path("out.obj");
