@@ -7,12 +7,18 @@ use std::fs;
 use serde_json::Value;
 use support::{BALL_FACES, Folder, ball, run};
 
-/// The lines of an OBJ that are the corners of faces, by the places of these as text.
-fn places(text: &str) -> Vec<Vec<String>> {
-    let points: Vec<&str> = text.lines().filter(|line| line.starts_with("v ")).collect();
+/// The places of the corners of an OBJ's faces, bit for bit.
+fn places(text: &str) -> Vec<Vec<[u64; 3]>> {
+    let numbers = |line: &str| -> Vec<f64> {
+        let words = line.split_whitespace().skip(1);
+        words.map(|word| word.parse().expect("a number")).collect()
+    };
+    let points = text.lines().filter(|line| line.starts_with("v "));
+    let points: Vec<Vec<f64>> = points.map(numbers).collect();
     let corner = |word: &str| {
         let number = word.split('/').next().unwrap_or(word);
-        points[number.parse::<usize>().expect("a number") - 1].to_owned()
+        let place = &points[number.parse::<usize>().expect("a number") - 1];
+        [0, 1, 2].map(|axis| place[axis].to_bits())
     };
     let faces = text.lines().filter_map(|line| line.strip_prefix("f "));
     faces
