@@ -104,8 +104,8 @@ fn an_odd_edge_that_nothing_makes_up_for_costs_a_triangle() {
 
 #[test]
 fn what_would_need_too_many_edges_in_one_is_left_and_told_of() {
-    let found = grafted(3, vec![border(1.0, 150, Some(0)), border(2.0, 9, None)]);
+    let found = grafted(3, vec![border(1.0, 151, Some(0)), border(2.0, 9, None)]);
     let reason = found.told[0].as_ref().unwrap_err();
-    assert_eq!(reason, "its border of 3 edges cannot take 150");
+    assert_eq!(reason, "its border of 3 edges cannot take 151");
     assert_eq!(found.mesh.n_faces(), 3);
 }
