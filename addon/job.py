@@ -15,6 +15,7 @@ from .artist import Artist
 from .guides.strokes import Stroke
 from .mesh_arrays import Float, MeshArrays
 from .modifiers import Applied
+from .regions import Flags
 
 # Before this much has passed, and this share is done, nobody can say how long the rest takes.
 _LEAST_S = 1.0
@@ -50,6 +51,8 @@ class Task:
     density: Float | None = None
     #: The strokes that guide it, in its space; none where no guides were named.
     guides: tuple[Stroke, ...] | None = None
+    #: Which faces are left as they are; none: no face is.
+    kept: Flags | None = None
     #: More objects that get its result: they share its mesh and have its scale.
     others: tuple[str, ...] = ()
     #: How many faces it gets; none: as many as the settings say.
@@ -144,6 +147,7 @@ def _remesh_one(
         carried_edges=artist and artist.edges and artist.edges.ends,
         cut_edges=artist and artist.elements.cuts,
         density=task.density,
+        keep_faces=task.kept,
         guides=[_guide(each) for each in task.guides or ()],
         scale=task.scale,
         progress=listener,

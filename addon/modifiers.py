@@ -164,6 +164,14 @@ def stack(copies: StandIns, thing: bpy.types.Object, wanted: Wanted) -> Stack:
     return Stack(names, _settings_of(thing, names), kept)
 
 
+def none(thing: bpy.types.Object) -> Stack:
+    """That nothing goes in: the mesh is taken as it is stored; raises `Refused`."""
+    for each in thing.modifiers:
+        if each.type == "MULTIRES" and each.total_levels:
+            raise Refused(f"apply or remove modifier {each.name} first: it holds a sculpt")
+    return Stack((), (), None)
+
+
 def _applied(copies: StandIns, thing: bpy.types.Object) -> tuple[str, ...]:
     """Those up to the last shown one that makes geometry."""
     counted = [each for each in thing.modifiers if each.show_viewport and each.type not in _KEPT]

@@ -10,6 +10,7 @@ from bpy.props import StringProperty
 
 from . import density as densities
 from . import guides as guidance
+from . import regions
 
 _Names = list[tuple[str, str]]
 
@@ -43,6 +44,19 @@ def guides(**more: object) -> Any:  # noqa: ANN401
     )
 
 
+def keep(**more: object) -> Any:  # noqa: ANN401
+    """The faces that are left as they are."""
+    return StringProperty(
+        name="Keep Faces",
+        description=(
+            "Vertex group, face set or face attribute whose faces are left as they are; the new "
+            "faces join them without a gap"
+        ),
+        search=_regions,
+        **more,
+    )
+
+
 def push_undo(_settings: object, _context: bpy.types.Context) -> None:
     """Makes an undo step, as Blender does for all fields but those that search."""
     if not (bpy.app.background or _unnoticed) and bpy.ops.ed.undo_push.poll():
@@ -65,3 +79,7 @@ def _densities(_settings: object, context: bpy.types.Context, _typed: str) -> _N
 
 def _holders(_settings: object, context: bpy.types.Context, _typed: str) -> _Names:
     return guidance.names(context)
+
+
+def _regions(_settings: object, context: bpy.types.Context, _typed: str) -> _Names:
+    return regions.names(context.object)

@@ -25,7 +25,11 @@ _RATIOS = (10, 25, 50)
 # Settings of several boxes.
 _BOXES = {"marked_edges"}
 # What stands in an empty field.
-_PLACEHOLDERS = {"density": "Group or Color", "guides": "Collection or Object"}
+_PLACEHOLDERS = {
+    "density": "Group or Color",
+    "guides": "Collection or Object",
+    "keep_faces": "Group or Face Set",
+}
 _ROWS = (
     ("Faces", "n_faces", "{:,}"),
     ("Quads", "quads_pct", "{:.0f} %"),

@@ -87,6 +87,7 @@ class Settings:
         ),
         items=choices.STRENGTHS,
     )
+    keep_faces: named.keep()
     sharp_angle: FloatProperty(
         name="Sharp Angle",
         description=(
@@ -262,7 +263,7 @@ NAMES = tuple(Settings.__annotations__)
 # Settings that say how many faces an object gets.
 _OF_SIZE = {"size", "ratio", "edge_length"}
 # Settings that say what of an object is read.
-_OF_MESH = {"density", "marked_edges", "mirror_modifier", "use_modifiers"}
+_OF_MESH = {"density", "keep_faces", "marked_edges", "mirror_modifier", "use_modifiers"}
 # Settings that say what is read beside an object.
 _BESIDE = {"guides", "guide_strength"}
 # Settings that say what is written.
@@ -279,6 +280,7 @@ SECTIONS = {
     "Symmetry": ("mirror", "mirror_modifier"),
     "Guides and Density": ("guides", "guide_strength", "marked_edges", "density"),
     "Keep": (
+        "keep_faces",
         *("borders", "fill_size", "handles", "seal_size", "solid", "solid_detail", "inner"),
         *("small_parts", "small_size"),
         *("use_modifiers", "use_weld", "weld", "keep_original", "weights_limit"),
@@ -293,6 +295,7 @@ class OrbflowSettings(bpy.types.PropertyGroup, Settings):
     # Without a step of its own, undo of a run would empty it.
     density: named.density(update=named.push_undo)
     guides: named.guides(update=named.push_undo)
+    keep_faces: named.keep(update=named.push_undo)
     show_irregular: BoolProperty(
         name="Irregular Vertices",
         description=(

@@ -101,9 +101,9 @@ def test_a_flat_scale_is_said(open_fixture: Open) -> None:
 
 def test_the_wrong_mode_greys_the_button_out_and_says_why(open_fixture: Open) -> None:
     first = open_fixture("03")
-    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.object.mode_set(mode="SCULPT")
     try:
-        with pytest.raises(RuntimeError, match="Orbflow works in object mode"):
+        with pytest.raises(RuntimeError, match="Orbflow works in object and edit mode"):
             press.orbflow_remesh()
     finally:
         bpy.ops.object.mode_set(mode="OBJECT")

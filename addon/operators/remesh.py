@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The button: Object > Orbflow Remesh."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -12,6 +13,7 @@ from .. import (
     artist,
     density,
     earlier,
+    editing,
     events,
     guides,
     mesh_arrays,
@@ -20,6 +22,7 @@ from .. import (
     outcomes,
     overlay,
     panel,
+    regions,
     runs,
     settings,
     size,
@@ -50,7 +53,8 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """The blocking twin for scripts, background mode and the redo panel."""
-        tasks = _tasks(context, self)
+        self._edited = editing.leave(context)
+        tasks = _tasks(context, self, self._edited)
         window_manager = context.window_manager
         window_manager.progress_begin(0.0, 1.0)
         try:
@@ -72,7 +76,9 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
         """Starts the thread and stays modal until it has ended."""
         if bpy.app.background:
             return self.execute(context)
-        running.append(Job(_tasks(context, self), settings.for_core(self)))
+        self._edited = editing.leave(context)
+        tasks = _tasks(context, self, self._edited)
+        running.append(Job(tasks, settings.for_core(self)))
         self._timer = context.window_manager.event_timer_add(_TICK_S, window=context.window)
         context.window_manager.modal_handler_add(self)
         # Blender crashes when this is given a new function on every tick: one reads the job.
@@ -99,9 +105,11 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
         job.cancel()
         job.wait()
         self._tidy(context)
+        editing.enter(self._edited, [])
 
     def _end(self, job: Job) -> set[str]:
         if job.is_cancelled:
+            editing.enter(self._edited, [])
             self.report({"INFO"}, "cancelled; nothing was changed")
             return {"CANCELLED"}
         return self._finish(job.outcomes)
@@ -118,6 +126,7 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
     def _finish(self, ended: list[Outcome]) -> set[str]:
         """Writes the results; the one place where errors become reports."""
         told = [_write(each, self.keep_original) for each in ended]
+        editing.enter(self._edited, [each for each in ended if isinstance(each, Done)])
         lines = [line for each in told for line in each.lines]
         runs.remember_lines(lines if len(told) > 1 else [])
         is_done = any(each.state != "refused" for each in told)
@@ -157,8 +166,8 @@ def why_not(context: bpy.types.Context) -> str:
     """Why the button is greyed out; empty when it is not."""
     if running:
         return "Orbflow is at work; press ESC to stop it"
-    if context.mode != "OBJECT":
-        return "Leave edit, sculpt or paint mode first: Orbflow works in object mode"
+    if context.mode not in {"OBJECT", "EDIT_MESH"}:
+        return "Leave sculpt or paint mode first: Orbflow works in object and edit mode"
     meshes = [each for each in context.selected_objects if each.type == "MESH"]
     if not meshes:
         return "Select at least one mesh object"
@@ -171,16 +180,21 @@ def _is_editable(thing: bpy.types.Object) -> bool:
     return thing.is_editable and thing.data.library is None
 
 
-def _tasks(context: bpy.types.Context, wanted: settings.Settings) -> list[Todo]:
+def _tasks(
+    context: bpy.types.Context, wanted: settings.Settings, edited: Sequence[str] = ()
+) -> list[Todo]:
+    """What is to be done; of objects that were in edit mode the selected faces alone."""
     context.view_layer.update()
     things = [each for each in context.selected_objects if each.type == "MESH"]
+    if edited:
+        things = [context.view_layer.objects[name] for name in edited]
     named = wanted.guides if settings.is_of_use(wanted, "guides") else ""
     try:
         drawn = guides.read(context, named, wanted.guide_strength == "EXACT")
     except guides.NoGuides as error:
         return [Failed(each.name, str(error)) for each in things]
     with stand_ins(context) as copies:
-        failed, alike = _sort(things, copies, drawn, wanted)
+        failed, alike = _sort(things, copies, drawn, wanted, is_editing=bool(edited))
         return failed + [_task(each, copies, wanted) for each in alike]
 
 
@@ -191,6 +205,8 @@ class _Alike:
     things: list[bpy.types.Object]
     stack: modifiers.Stack
     guides: tuple[Stroke, ...] | None
+    #: Whether of its mesh the faces alone are meant that are selected in edit mode.
+    is_editing: bool
 
 
 def _sort(
@@ -198,6 +214,8 @@ def _sort(
     copies: StandIns,
     drawn: list[Stroke] | None,
     wanted: settings.Settings,
+    *,
+    is_editing: bool,
 ) -> tuple[list[Todo], list[_Alike]]:
     """Which objects cannot be done; which of the others share a mesh that one result does for."""
     failed: list[Todo] = []
@@ -207,14 +225,15 @@ def _sort(
             failed.append(Failed(thing.name, reason))
             continue
         try:
-            stack = modifiers.stack(copies, thing, wanted)
+            none = modifiers.none(thing) if is_editing else None
+            stack = none or modifiers.stack(copies, thing, wanted)
         except modifiers.Refused as error:
             failed.append(Failed(thing.name, str(error)))
             continue
         scale = (f"{x:.5g}" for x in thing.matrix_world.to_scale())
         own = guides.of(thing, drawn, len(things) == 1)
         key = (thing.data, stack, *scale, *(each.key() for each in own or ()))
-        alike.setdefault(key, _Alike([], stack, own)).things.append(thing)
+        alike.setdefault(key, _Alike([], stack, own, is_editing)).things.append(thing)
     return failed, list(alike.values())
 
 
@@ -234,14 +253,20 @@ def _task(alike: _Alike, copies: StandIns, wanted: settings.Settings) -> Todo:
         all_of = [seen.thing] + [each for each in alike.things if each != seen.thing]
         given = artist.read(all_of, wanted.weights_limit)
         wish = density.read(seen.thing, wanted.density, given.groups)
-    except (modifiers.Refused, density.NoSuchName) as error:
+        kept = regions.kept(seen.thing, wanted.keep_faces, given.groups)
+        if alike.is_editing:
+            others_of = regions.unselected(thing.data)
+            kept = others_of if kept is None else kept | others_of
+    except (modifiers.Refused, density.NoSuchName, regions.NoRegion) as error:
         return Failed(thing.name, str(error))
     given = replace(given, keys=seen.keys, lost=given.lost + seen.lost)
     arrays = mesh_arrays.read(seen.thing.data, wanted.marked_edges)
     scale = tuple(thing.matrix_world.to_scale())
     names = tuple(each.name for each in others)
-    n_faces = size.n_faces(wanted, arrays, scale)
-    return Task(thing.name, arrays, scale, given, wish, alike.guides, names, n_faces, seen.applied)
+    n_faces = size.n_faces(wanted, arrays, scale, kept, is_editing=alike.is_editing)
+    return Task(
+        thing.name, arrays, scale, given, wish, alike.guides, kept, names, n_faces, seen.applied
+    )
 
 
 def _replace(outcome: Done, keep_original: bool) -> dict[str, Any] | Failed:

@@ -127,6 +127,11 @@ pub struct Wanted {
     pub density: Option<PathBuf>,
     #[command(flatten)]
     pub drawn: Guides,
+    /// Numbers of faces of IN that are kept as they are, counted from 0 in the order of the file, as
+    /// text: 12, or 12-40 for all from 12 to 40; the new faces join them without a gap, and --faces
+    /// counts them too
+    #[arg(long, value_name = "FILE")]
+    pub keep: Option<PathBuf>,
     /// Make quads that are their own image across an axis, in the plane through the origin or the
     /// middle of the mesh; auto: across the first in which every vertex is another's image
     #[arg(long, default_value = "auto", value_parser = mirror())]

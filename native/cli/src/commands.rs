@@ -14,7 +14,7 @@ use crate::bar::with_bar;
 use crate::error::Error;
 use crate::formats::FileFormat;
 use crate::given::{Carried, Given, Remade};
-use crate::inputs::{numbers, read, read_silently};
+use crate::inputs::{faces, numbers, read, read_silently};
 use crate::interrupt::Interrupt;
 use crate::outputs::Outputs;
 use crate::parts;
@@ -101,6 +101,8 @@ struct Rebuilding<'a> {
     density: Option<Vec<f64>>,
     /// Lines that edges are to follow.
     guides: Vec<Stroke>,
+    /// Which faces are kept, where a file says it.
+    keep: Option<Vec<bool>>,
     outputs: Outputs,
 }
 
@@ -120,6 +122,9 @@ impl<'a> Rebuilding<'a> {
         let carried = given.carried(format(output, *output_format), wanted.parts.weld.0);
         let density = wanted.density.as_deref().map(numbers).transpose()?;
         let guides = wanted.drawn.read()?;
+        let n_faces = given.file.mesh.n_faces();
+        let keep = wanted.keep.as_deref().map(|path| faces(path, n_faces));
+        let keep = keep.transpose()?;
         let token = interrupt.start_work();
         let places = [Some(output), files.report.as_ref(), files.sphere.as_ref()];
         let outputs = Outputs::new(places.into_iter().flatten())?;
@@ -130,6 +135,7 @@ impl<'a> Rebuilding<'a> {
             carried,
             density,
             guides,
+            keep,
             outputs,
         })
     }
@@ -146,6 +152,7 @@ impl<'a> Rebuilding<'a> {
             density: self.density.as_deref(),
             cuts: self.carried.cuts(),
             guides: &self.guides,
+            keep_faces: self.keep.as_deref(),
             ..Input::new(&self.given.file.mesh)
         };
         let remeshed = with_bar(self.token, |progress| {
@@ -294,6 +301,9 @@ fn tell_all(place: &Place, report: &pipeline::Report) {
     parts::tell_sealed(place, &report.parts);
     if let Some(solid) = &report.solid {
         parts::tell_solid(place, solid);
+    }
+    if let Some(kept) = &report.kept_faces {
+        eprintln!("{place}: {}", kept.text());
     }
     parts::tell(place, &report.kept);
     for warning in &report.warnings {

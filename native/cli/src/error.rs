@@ -56,6 +56,16 @@ pub enum Error {
         line: usize,
         word: String,
     },
+    /// A word in it names no faces of the mesh.
+    #[error(
+        "{}, line {line}: '{word}' names no faces; there are {n_faces}, from 0 on", path.display()
+    )]
+    NotFaces {
+        path: PathBuf,
+        line: usize,
+        word: String,
+        n_faces: usize,
+    },
     /// The file of guides cannot be read.
     #[error("cannot read {}: {cause}", path.display())]
     OpenGuides { path: PathBuf, cause: io::Error },

@@ -76,6 +76,36 @@ pub fn numbers(path: &Path) -> Result<Vec<f64>, Error> {
     words.map(number).collect()
 }
 
+/// Which of so many faces a text file of whitespace-separated numbers and ranges of them names.
+pub fn faces(path: &Path, n_faces: usize) -> Result<Vec<bool>, Error> {
+    let text = fs::read_to_string(path).map_err(|cause| Error::OpenNumbers {
+        path: path.to_owned(),
+        cause,
+    })?;
+    let mut are_named = vec![false; n_faces];
+    for (i, line) in text.lines().enumerate() {
+        for word in line.split_whitespace() {
+            let not_faces = || Error::NotFaces {
+                path: path.to_owned(),
+                line: i + 1,
+                word: word.to_owned(),
+                n_faces,
+            };
+            let (first, last) = word.split_once('-').unwrap_or((word, word));
+            let [first, last] = [first, last].map(str::parse::<usize>);
+            let (Ok(first), Ok(last)) = (first, last) else {
+                return Err(not_faces());
+            };
+            let named = are_named.get_mut(first..last.saturating_add(1));
+            named
+                .filter(|named| !named.is_empty())
+                .ok_or_else(not_faces)?
+                .fill(true);
+        }
+    }
+    Ok(are_named)
+}
+
 fn bytes(place: &Place) -> io::Result<Vec<u8>> {
     if let Some(path) = place.path() {
         return fs::read(path);

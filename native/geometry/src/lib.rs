@@ -45,6 +45,7 @@ pub mod deform;
 pub mod elementary;
 pub mod embed;
 pub mod flow;
+pub mod graft;
 pub mod groups;
 pub mod guidance;
 pub mod hierarchy;

@@ -18,8 +18,8 @@ const FLOORS: [&[&str]; 5] = [
         "sphere_map",
     ],
     &[
-        "clean", "close", "decimate", "deform", "embed", "flow", "pair", "rejoin", "score",
-        "solid", "sphere", "transfer",
+        "clean", "close", "decimate", "deform", "embed", "flow", "graft", "pair", "rejoin",
+        "score", "solid", "sphere", "transfer",
     ],
     &["pipeline"],
 ];

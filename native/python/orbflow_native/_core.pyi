@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 _Floats: TypeAlias = NDArray[np.float32]
 _Ints: TypeAlias = NDArray[np.int32]
+_Flags: TypeAlias = NDArray[np.bool_]
 _Listener: TypeAlias = Callable[[str, float], Any]
 
 __all__ = [
@@ -250,6 +251,7 @@ def remesh(
     density: _Floats | None = None,
     reduced: tuple[_Floats, _Ints] | None = None,
     guides: Sequence[Guide] | None = None,
+    keep_faces: _Flags | None = None,
     progress: _Listener | None = None,
     cancel: CancelToken | None = None,
 ) -> Remeshed:

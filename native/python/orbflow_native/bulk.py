@@ -41,6 +41,7 @@ if TYPE_CHECKING:
 
     _Floats = NDArray[np.float32]
     _Ints = NDArray[np.int32]
+    _Flags = NDArray[np.bool_]
 
 
 def remesh(
@@ -81,6 +82,7 @@ def remesh(
     density: _Floats | None = None,
     reduced: tuple[_Floats, _Ints] | None = None,
     guides: Sequence[_core.Guide] | None = None,
+    keep_faces: _Flags | None = None,
     progress: Callable[[str, float], Any] | None = None,
     cancel: _core.CancelToken | None = None,
 ) -> _core.Remeshed:
@@ -125,13 +127,16 @@ def remesh(
     meshes where installed.
     `guides` are lines near the surface, each a `Guide`, that edges of flowing quads follow; what
     became of each is in the report's `guides`, and a lost exact one is among its `warnings`.
+    `keep_faces` (F,) are faces that are kept as they are: they come last, in order and bit for
+    bit, the new ones join them without a gap, and `faces` counts them too.
     `score_samples` is how many points of each surface the score looks at; 0 makes no score.
     `progress` is called on the calling thread, at most 20 times a second, with the name of the
     step and the share of the work that is done. The same input and settings give the same bytes.
 
     Raises `InputError` when no part of the mesh can be done, `Cancelled` when the token was raised.
     """
-    if reduced is None and not solid and is_available():
+    has_all = keep_faces is None and not solid
+    if reduced is None and has_all and is_available():
         reduced = reduce(positions, loop_start, corner_vert, cancel)
     return _core.remesh(
         positions,
@@ -170,6 +175,7 @@ def remesh(
         density=density,
         reduced=reduced,
         guides=guides,
+        keep_faces=keep_faces,
         progress=progress,
         cancel=cancel,
     )

@@ -78,6 +78,9 @@ pub struct Remeshed {
 /// `orbflow train` wrote, or its path. `n_crosses` is how many crosses of the field to tell at most.
 /// `guides` are lines near the surface that edges of flowing quads follow; what became of each is in
 /// the report's `guides`, and a lost exact one is among its `warnings`.
+/// `keep_faces` `(F,) bool` are faces that are kept as they are: they come last, in order, bit for bit,
+/// and the new ones join them without a gap; `faces` counts them too. The report's `kept_faces` says how
+/// they were joined.
 /// `score_samples` is how many points of each surface the score looks at; 0 makes no score.
 /// `progress` is called on the calling thread, at most 20 times a second, with the name of the step
 /// and the share of the work that is done. The same input and settings give the same bytes.
@@ -92,7 +95,7 @@ pub struct Remeshed {
     solid_detail=0.4, inner="keep", weld=1e-5, strict=false, predictor="auto", weights=None,
     threads=0, seed=0, scale=None, score_samples=10_000, n_crosses=0,
     material_index=None, marked_edges=None, carried_edges=None, cut_edges=None, density=None,
-    reduced=None, guides=None, progress=None, cancel=None,
+    reduced=None, guides=None, keep_faces=None, progress=None, cancel=None,
 ))]
 #[expect(
     clippy::too_many_arguments,
@@ -138,6 +141,7 @@ pub fn remesh<'py>(
     density: Option<&Bound<'py, PyAny>>,
     reduced: Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
     guides: Option<Vec<PyRef<'py, Guide>>>,
+    keep_faces: Option<&Bound<'py, PyAny>>,
     progress: Option<Bound<'py, PyAny>>,
     cancel: Option<&CancelToken>,
 ) -> PyResult<Remeshed> {
@@ -158,12 +162,11 @@ pub fn remesh<'py>(
         .map(|(points, triangles)| arrays::triangles(&points, &triangles, scale))
         .transpose()?;
     let guides = strokes(&guides.unwrap_or_default(), scale);
+    let keep = keep_faces.map(flags).transpose()?;
     let settings = Settings {
         faces,
         kind: report::choice("kind", kind)?,
-        primitive: primitive
-            .map(|word| report::choice("primitive", word))
-            .transpose()?,
+        primitive: self::primitive(primitive)?,
         style: Style {
             follow_shape,
             adaptivity,
@@ -195,6 +198,7 @@ pub fn remesh<'py>(
         carried: carried.as_deref().unwrap_or_default(),
         cuts: cuts.as_deref(),
         guides: &guides,
+        keep_faces: keep.as_deref(),
     };
     let job = Job::new(progress, cancel).scaled(scale);
     let mut remeshed = job.run(py, |progress| {
@@ -206,6 +210,15 @@ pub fn remesh<'py>(
 
 fn materials(array: &Bound<'_, PyAny>) -> PyResult<Vec<i32>> {
     arrays::column(array, "material_index", "(F,)")
+}
+
+fn flags(array: &Bound<'_, PyAny>) -> PyResult<Vec<bool>> {
+    arrays::column(array, "keep_faces", "(F,)")
+}
+
+fn primitive(word: Option<&str>) -> PyResult<Option<pipeline::Primitive>> {
+    word.map(|word| report::choice("primitive", word))
+        .transpose()
 }
 
 fn strokes(guides: &[PyRef<'_, Guide>], scale: DVec3) -> Vec<Stroke> {

@@ -8,6 +8,7 @@ use super::marks::Marks;
 use super::meet::Meetings;
 use super::mirror::{self, Plane, Role};
 use super::part::{PartJob, PartResult, Wanted};
+use super::region::Region;
 use super::report::Mirrored;
 use super::split::{Parts, components, share};
 use super::strokes::Strokes;
@@ -22,6 +23,8 @@ pub struct Common<'a> {
     pub marks: &'a Marks,
     /// The sides of the polygons that came in, where their quads may stay.
     pub sides: &'a Marks,
+    /// Where something is kept beyond it.
+    pub line: &'a Marks,
     pub density: &'a Density,
     /// The mesh as somebody else reduced it, where it is one part.
     pub reduced: Option<&'a PolygonMesh>,
@@ -121,6 +124,7 @@ impl Work<'_, '_> {
                 reduced: self.reduced,
                 marks: common.marks,
                 sides: common.sides,
+                line: common.line,
                 density: common.density,
                 strokes: common.strokes.on_part(at),
                 has_tubes: false,
@@ -145,7 +149,7 @@ impl Each {
         self,
         mut prepared: Prepared,
         parts: &mut Parts,
-        (mesh, settings): (&PolygonMesh, &Settings),
+        (mesh, region, settings): (&PolygonMesh, Option<&Region>, &Settings),
         progress: &Progress<'_>,
     ) -> Result<(Prepared, Joined), Error> {
         let is_left: Vec<bool> = self.0.iter().map(Result::is_ok).collect();
@@ -157,16 +161,32 @@ impl Each {
                 Err(text) => failed.push((at, text)),
             }
         }
-        if !failed.is_empty() {
-            parts.keep_failed(mesh, failed, settings)?;
-            prepared = prepared.only(&is_left);
-            for part in &mut made {
-                part.rename_image(&is_left);
+        let mut is_left = is_left;
+        loop {
+            if !failed.is_empty() {
+                parts.keep_failed(mesh, failed, settings)?;
+                prepared = prepared.only(&is_left);
+                for part in &mut made {
+                    part.rename_image(&is_left);
+                }
             }
+            let meetings = Meetings::new((mesh, &prepared.frame), parts);
+            let Some(region) = region else {
+                let joined = meetings.join(join::join(made), progress)?;
+                return Ok((prepared, joined));
+            };
+            let joined = meetings.join(join::join(made.clone()), progress)?;
+            failed = match region.joined(joined, (mesh, &prepared), progress)? {
+                Ok(joined) => return Ok((prepared, joined)),
+                Err(failed) => failed,
+            };
+            is_left = vec![true; made.len()];
+            for &(at, _) in &failed {
+                is_left[at] = false;
+            }
+            let mut left = is_left.iter();
+            made.retain(|_| left.next() == Some(&true));
         }
-        let meetings = Meetings::new((mesh, &prepared.frame), parts);
-        let joined = meetings.join(join::join(made), progress)?;
-        Ok((prepared, joined))
     }
 }
 

@@ -114,6 +114,37 @@ pub enum Error {
         /// How many faces.
         n_faces: usize,
     },
+    /// Not said of every face whether it is kept.
+    #[error("{n_flags} flags of faces to keep for {n_faces} faces")]
+    KeepCount {
+        /// How many flags.
+        n_flags: usize,
+        /// How many faces.
+        n_faces: usize,
+    },
+    /// Nothing is left to remesh.
+    #[error("all {n_faces} faces are kept: nothing is left to remesh")]
+    AllKept {
+        /// How many faces there are.
+        n_faces: usize,
+    },
+    /// What is kept leaves no faces for the rest.
+    #[error(
+        "{n_kept} faces are kept, but {n_faces} were asked for in all: at least {} are needed",
+        n_kept + MIN_FACES
+    )]
+    KeptTooMany {
+        /// How many are kept.
+        n_kept: usize,
+        /// How many were asked for.
+        n_faces: usize,
+    },
+    /// A solid has no faces of the input.
+    #[error("{n_kept} faces are to be kept, but a solid is made anew all over")]
+    KeptInSolid {
+        /// How many are to be kept.
+        n_kept: usize,
+    },
     /// A part was closed and could not be opened again.
     #[error("the part could not be opened again: {reason}")]
     Unopened {

@@ -66,6 +66,16 @@ pub enum Fault {
         /// Of how many.
         n_shared_lines: usize,
     },
+    /// Triangles among quads beside faces that are kept.
+    KeptTriangles {
+        /// How many.
+        n_triangles: usize,
+    },
+    /// Faces are kept of a mesh that is not symmetric in the named plane.
+    KeptUnlikeImage {
+        /// How far the others are from their image, in % of the diagonal.
+        off_pct: f64,
+    },
     /// A stroke that was to be met and is not, or was not drawn.
     Guide {
         /// Which one.
@@ -129,6 +139,16 @@ impl Fault {
                 n_shared_lines,
             } => format!(
                 "sheets no longer meet vertex by vertex along {n_left} of {n_shared_lines} lines where they did"
+            ),
+            Self::KeptTriangles { n_triangles } => {
+                let (triangles, are) = of(*n_triangles, "triangle", "lies", "lie");
+                format!(
+                    "{triangles} {are} beside kept faces: quads alone cannot have as many edges there"
+                )
+            }
+            Self::KeptUnlikeImage { off_pct } => format!(
+                "nothing was made symmetric: what is not kept is not (its sides differ by up to \
+                 {off_pct:.1} % of its size), and made so it would not join what is kept"
             ),
             Self::Guide { guide, reason } => format!("guide {guide} is lost: {reason}"),
             Self::Network { n_parts } => {

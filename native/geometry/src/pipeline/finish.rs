@@ -7,6 +7,7 @@ use super::frame::Prepared;
 use super::join::Joined;
 use super::mirror::Plane;
 use super::origins::origins;
+use super::region::Region;
 use super::scored::{Judged, judge, sound};
 use super::split::Parts;
 use super::stay::{Elements, Staying};
@@ -29,6 +30,8 @@ pub struct Made<'a> {
     pub plane: Option<Plane>,
     pub joined: Joined,
     pub strokes: Strokes,
+    /// What is kept, if anything is.
+    pub region: Option<&'a Region>,
 }
 
 impl Made<'_> {
@@ -44,7 +47,14 @@ impl Made<'_> {
         let crosses = std::mem::take(&mut self.joined.crosses);
         let crosses = crosses::leave(crosses, &self.prepared.frame);
         let faces = self.parts.staying(self.input.mesh);
-        let staying = Staying::new(self.input.mesh, faces, &self.joined.met);
+        let whole = self.region.map(|_| {
+            // The polygons that are kept, in the place of hollow ones.
+            let places = self.input.mesh.positions().to_vec();
+            self.given.mesh.with_positions(places)
+        });
+        let stays = whole.as_ref().unwrap_or(self.input.mesh);
+        let staying = Staying::new(stays, faces, &self.joined.met);
+        let staying = staying.exactly(self.region.is_some());
         let stage = progress.part("transfer", 0.9, 0.92);
         let carrying = || self.elements(&staying, &stage);
         let (mut made, carried) = clock.step("transfer", carrying)?;
@@ -86,6 +96,7 @@ impl Made<'_> {
             kept: self.parts.kept,
             carried,
             rejoined: self.joined.rejoined,
+            kept_faces: self.joined.kept_faces,
             guides,
             score: judged.score,
             score_refused: judged.refused,

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::crosses::Cross;
 use super::part::PartResult;
+use super::region::KeptFaces;
 use super::report::{PartReport, Rejoined};
 use super::stay::Met;
 use crate::embed;
@@ -26,6 +27,8 @@ pub struct Joined {
     pub rejoined: Option<Rejoined>,
     /// What was made where faces stay as they were.
     pub met: Met,
+    /// How faces that are kept were joined; none where none are.
+    pub kept_faces: Option<KeptFaces>,
 }
 
 /// Puts the parts one after the other; one part stays as it is.
@@ -71,6 +74,7 @@ pub fn join(results: Vec<PartResult>) -> Joined {
         parts,
         rejoined: None,
         met: Met::default(),
+        kept_faces: None,
     }
 }
 

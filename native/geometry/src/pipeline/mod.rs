@@ -47,6 +47,7 @@ mod paired;
 mod part;
 mod probe;
 mod reduce;
+mod region;
 mod report;
 mod rods;
 mod scored;
@@ -78,6 +79,7 @@ pub use kept::{Flaw, Kept, Outcome, Reason};
 pub use laid::Instead;
 pub use mirror::{Mirror, Plane, Through};
 pub use origins::{Origin, Origins};
+pub use region::KeptFaces;
 pub use report::{Mirrored, PartReport, Reduced, Rejoined, Report};
 pub use scored::score;
 pub use settings::{Kind, MAX_FACES, MIN_FACES, Primitive, Settings, Style};
@@ -101,6 +103,7 @@ use each::Common;
 use finish::Made;
 use frame::Prepared;
 use marks::Marks;
+use region::Region;
 use split::Parts;
 use strokes::Strokes;
 
@@ -131,6 +134,9 @@ pub struct Input<'a> {
     pub cuts: Option<&'a [Vec<[VertexId; 2]>]>,
     /// Strokes near the mesh that edges of quads that flow are to follow.
     pub guides: &'a [Stroke],
+    /// Which of its faces are kept as they are; the new ones join them without a gap. Those that are
+    /// kept are among the faces asked for.
+    pub keep_faces: Option<&'a [bool]>,
 }
 
 impl<'a> Input<'a> {
@@ -145,6 +151,7 @@ impl<'a> Input<'a> {
             carried: &[],
             cuts: None,
             guides: &[],
+            keep_faces: None,
         }
     }
 }
@@ -202,25 +209,34 @@ fn run(
     predictor: &dyn OffsetPredictor,
     progress: &Progress<'_>,
 ) -> Result<Remeshed, Error> {
+    if let Some(region) = Region::of(&given, settings)? {
+        return region::run((given, &region), settings, predictor, progress);
+    }
     if settings.solid {
         return solid::run(given, settings, predictor, progress);
     }
-    shells((given, Clock::default()), settings, predictor, progress)
+    shells(
+        (given, None, Clock::default()),
+        settings,
+        predictor,
+        progress,
+    )
 }
 
-/// Every part of a mesh as it is.
+/// Every part of a mesh as it is, but for faces that are kept.
 fn shells(
-    (given, mut clock): (Input<'_>, Clock),
+    (given, region, mut clock): (Input<'_>, Option<&Region>, Clock),
     settings: &Settings,
     predictor: &dyn OffsetPredictor,
     progress: &Progress<'_>,
 ) -> Result<Remeshed, Error> {
     let stage = progress.part("clean", 0.0, 0.02);
-    let apart = || taken_apart(given.mesh, settings.weld, &stage);
+    let came = region.map_or(given.mesh, Region::hollow);
+    let apart = || taken_apart(came, settings.weld, &stage);
     let (apart, moved) = clock.step("clean", apart)?;
-    let mesh = moved.as_ref().unwrap_or(given.mesh);
+    let mesh = moved.as_ref().unwrap_or(came);
     let input = Input { mesh, ..given };
-    let sort = || Parts::new(&input, apart, settings, &stage);
+    let sort = || Parts::new(&input, (apart, region), settings, &stage);
     let (mut parts, cleaned) = clock.step("split", sort)?;
     let marked = parts.marked_on_done(&input);
     let input = Input {
@@ -229,6 +245,12 @@ fn shells(
     };
     let facing = || Prepared::facing(cleaned, &input, settings.mirror(), &stage);
     let (prepared, plane) = clock.step("clean", facing)?;
+    // A side that is replaced by the other's image would not join what is kept.
+    let (plane, unlike) = match (region, plane) {
+        (Some(_), Some(plane)) if !plane.was_symmetric => (None, Some(plane.off_pct)),
+        _ => (plane, None),
+    };
+    let line = region.map(|region| region.marks(mesh, &prepared.frame));
     let drawn = || Strokes::new(&input, &prepared, (plane, settings), &stage);
     let strokes = clock.step("clean", drawn)?;
     let laid = meet::laid(&marked, &parts);
@@ -236,15 +258,22 @@ fn shells(
         prepared: &prepared,
         marks: &Marks::new((mesh, &laid), &prepared.frame),
         sides: &own::sides(&prepared, mesh, settings),
+        line: &line.unwrap_or_default(),
         density: &Density::new(&input, &prepared.frame),
-        reduced: given.reduced.filter(|_| parts.kept.is_empty()),
+        reduced: given
+            .reduced
+            .filter(|_| parts.kept.is_empty() && region.is_none()),
         settings,
         plane,
         predictor,
         strokes: &strokes,
     };
     let each = common.run(&mut clock, progress)?;
-    let (prepared, joined) = each.join(prepared, &mut parts, (mesh, settings), progress)?;
+    let wanted = (mesh, region, settings);
+    let (prepared, mut joined) = each.join(prepared, &mut parts, wanted, progress)?;
+    if let Some(kept) = &mut joined.kept_faces {
+        kept.plane_off_pct = unlike;
+    }
     let made = Made {
         given,
         input,
@@ -254,6 +283,7 @@ fn shells(
         plane,
         joined,
         strokes,
+        region,
     };
     made.finished(clock, progress)
 }
@@ -286,6 +316,7 @@ impl Input<'_> {
     fn check(&self) -> Result<(), Error> {
         self.check_edges()?;
         self.check_density()?;
+        self.check_keep()?;
         let n_faces = self.mesh.n_faces();
         match self.materials {
             Some(materials) if materials.len() != n_faces => Err(Error::MaterialCount {

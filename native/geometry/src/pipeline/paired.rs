@@ -273,6 +273,7 @@ mod tests {
             reduced: None,
             marks: &marks,
             sides: &marks,
+            line: &marks,
             density: &density,
             strokes: crate::pipeline::strokes::OnPart::none(),
             has_tubes: false,

@@ -46,6 +46,8 @@ pub struct Wanted<'a> {
     pub marks: &'a Marks,
     /// The sides of the polygons that came in, of a mesh that is as coarse as what is asked for.
     pub sides: &'a Marks,
+    /// Where something is kept beyond it: no border that is filled.
+    pub line: &'a Marks,
     pub density: &'a Density,
     /// What the artist drew on it.
     pub strokes: OnPart<'a>,
@@ -56,6 +58,7 @@ pub struct Wanted<'a> {
 }
 
 /// What has become of a part.
+#[derive(Clone)]
 pub struct PartResult {
     pub mesh: PolygonMesh,
     pub sphere: Vec<DVec3>,
@@ -88,7 +91,7 @@ impl PartJob<'_> {
             area: measure::total_area(&part),
         };
         let stage = progress.part("close", 0.0, 0.02);
-        let whole = || Whole::new(part, (wanted.settings, wanted.marks), &stage);
+        let whole = || Whole::new(part, (wanted.settings, wanted.marks, wanted.line), &stage);
         let mut whole = clock.step("close", whole)?;
         let filling = std::mem::take(&mut whole.filling);
         // It takes no time to speak of, and what comes after it where it fails starts here.

@@ -8,6 +8,7 @@ use super::clock::Step;
 use super::flowed::Flowed;
 use super::kept::Kept;
 use super::mirror::Plane;
+use super::region::KeptFaces;
 use super::settings::Settings;
 use super::solid::Solid;
 use super::strokes::GuideReport;
@@ -43,6 +44,8 @@ pub struct Report {
     pub carried: Option<CarriedReport>,
     /// What became of lines along which sheets meet; none where there were none.
     pub rejoined: Option<Rejoined>,
+    /// What became of faces that were to be kept; none where there were none.
+    pub kept_faces: Option<KeptFaces>,
     /// What became of strokes, in their order.
     pub guides: Vec<GuideReport>,
     /// How good the result is; none when it was not asked for or could not be measured.

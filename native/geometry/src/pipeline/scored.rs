@@ -106,6 +106,7 @@ impl Judging<'_> {
             glance,
             lost_marks: self.lost_marks(progress)?,
             rejoined: self.joined.rejoined,
+            kept_faces: self.joined.kept_faces,
         };
         judged.warnings = warnings(&made, settings, progress)?;
         Ok(judged)

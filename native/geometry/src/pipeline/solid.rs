@@ -107,9 +107,10 @@ pub fn run(
         carried: &outer.carried,
         cuts: None,
         guides: given.guides,
+        keep_faces: None,
     };
     let stage = progress.part("", 0.1, 0.97);
-    let made = shells((inner, clock), settings, predictor, &stage);
+    let made = shells((inner, None, clock), settings, predictor, &stage);
     let mut made = made.map_err(unnamed_in)?;
     outer.dress(&mut made, &progress.part("transfer", 0.97, 1.0))?;
     made.report.input = measure::topology(given.mesh, progress)?;

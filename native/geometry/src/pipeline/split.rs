@@ -10,10 +10,11 @@ use super::borders::SphereAlone;
 use super::density::Density;
 use super::frame::{Frame, bits};
 use super::kept::{Flaw, Kept, Outcome, Reason};
+use super::region::Region;
 use super::stay::some_faces;
 use super::{Error, Inner, Input, Settings, diagnosis, inner, small};
 use crate::clean::{Apart, Cleaned, SharedLine, SharedPoint};
-use crate::mesh::{FaceId, FaceMap, PolygonMesh, TriangleMesh, VertexId, VertexMap, bounds};
+use crate::mesh::{FaceId, FaceMap, Id, PolygonMesh, TriangleMesh, VertexId, VertexMap, bounds};
 use crate::progress::{Cancelled, Progress};
 
 /// The parts of a mesh.
@@ -34,6 +35,8 @@ pub struct Parts {
     pub touching: Vec<SharedLine>,
     /// The points where surfaces touch.
     pub points: Vec<SharedPoint>,
+    /// The faces that are kept because somebody wants them so.
+    region: Vec<FaceId>,
 }
 
 /// What becomes of a surface.
@@ -65,7 +68,7 @@ impl Parts {
     /// merely small; when cancelled.
     pub fn new(
         input: &Input<'_>,
-        apart: Apart,
+        (apart, region): (Apart, Option<&Region>),
         settings: &Settings,
         progress: &Progress<'_>,
     ) -> Result<(Self, Cleaned), Error> {
@@ -83,7 +86,8 @@ impl Parts {
             let amounts = amounts(input, &apart.mesh, progress)?;
             small::mark(&mut parts, input.mesh, &amounts, settings);
         }
-        Self::chosen(input.mesh, apart, (&component, n), parts, settings)
+        let given = (input.mesh, region);
+        Self::chosen(given, apart, (&component, n), parts, settings)
     }
 
     /// The same where every part, however small, has to be done and to be closed.
@@ -102,12 +106,12 @@ impl Parts {
         };
         let (component, n) = apart.mesh.face_components();
         let parts = diagnosis::parts((mesh, &settings, alone), &apart, (&component, n));
-        let chosen = Self::chosen(mesh, apart, (&component, n), parts, &settings);
+        let chosen = Self::chosen((mesh, None), apart, (&component, n), parts, &settings);
         chosen.map(|(_, cleaned)| cleaned)
     }
 
     fn chosen(
-        mesh: &PolygonMesh,
+        (mesh, region): (&PolygonMesh, Option<&Region>),
         apart: Apart,
         (component, n_surfaces): (&[u32], usize),
         parts: Vec<Part>,
@@ -123,6 +127,7 @@ impl Parts {
             shared: apart.shared,
             touching: apart.touching,
             points: apart.points,
+            region: Vec::new(),
         };
         for (i, part) in parts.into_iter().enumerate() {
             for &face in &part.faces {
@@ -136,11 +141,19 @@ impl Parts {
                     is_done[surface] = true;
                     chosen.names.push(i);
                 }
-                _ => chosen.kept.push(kept(i, part, settings)),
+                _ => {
+                    let mut kept = kept(i, part, settings);
+                    if region.is_some_and(|region| chosen.is_beside(region, i)) {
+                        // Else there would be a hole beside what is kept.
+                        kept.outcome = Outcome::Kept;
+                    }
+                    chosen.kept.push(kept);
+                }
             }
         }
         chosen.check(settings)?;
         chosen.attach(mesh);
+        chosen.keep(region);
         let cleaned = Cleaned {
             mesh: apart.mesh,
             source: apart.source,
@@ -151,6 +164,29 @@ impl Parts {
         }
         let is_done: Vec<bool> = component.iter().map(|&c| is_done[c as usize]).collect();
         Ok((chosen, cleaned.only(&is_done)))
+    }
+
+    /// Whether a part is beside what is kept.
+    fn is_beside(&self, region: &Region, part: usize) -> bool {
+        let mut of_faces = self.part_of.iter().enumerate();
+        of_faces.any(|(face, of)| {
+            *of == Some(part as u32) && region.is_beside(FaceId::from_index(face))
+        })
+    }
+
+    /// Takes faces that are kept from parts that they were attached to, and keeps them.
+    fn keep(&mut self, region: Option<&Region>) {
+        let Some(region) = region else {
+            return;
+        };
+        for face in region.faces() {
+            if let Some(part) = self.part_of[face].take()
+                && let Ok(at) = self.kept.binary_search_by_key(&(part as usize), |k| k.part)
+            {
+                self.kept[at].n_faces -= 1;
+            }
+        }
+        self.region = region.faces().collect();
     }
 
     /// Whether what is done is enough.
@@ -235,7 +271,8 @@ impl Parts {
     /// The faces of the input that go out as they were, in order.
     pub fn staying(&self, mesh: &PolygonMesh) -> Vec<FaceId> {
         let stays = |part: u32| self.stays(part as usize);
-        let is_staying = |face: &FaceId| self.part_of[*face].is_some_and(stays);
+        let is_kept = |face: &FaceId| self.region.binary_search(face).is_ok();
+        let is_staying = |face: &FaceId| self.part_of[*face].is_some_and(stays) || is_kept(face);
         mesh.face_ids().filter(is_staying).collect()
     }
 
@@ -256,7 +293,7 @@ impl Parts {
 
     /// Those of some edges of the input that have both ends on what is remeshed, by their places.
     pub fn on_done(&self, mesh: &PolygonMesh, edges: &[[VertexId; 2]]) -> Vec<usize> {
-        if self.kept.is_empty() || edges.is_empty() {
+        if self.is_all_done() || edges.is_empty() {
             return (0..edges.len()).collect();
         }
         let mut is_there = VertexMap::filled(mesh.n_vertices(), false);
@@ -277,7 +314,12 @@ impl Parts {
 
     /// The faces of the input that are remeshed, where these are not all.
     pub fn done_alone(&self, mesh: &PolygonMesh) -> Option<PolygonMesh> {
-        (!self.kept.is_empty()).then(|| some_faces(mesh, |face| self.is_done(face)))
+        (!self.is_all_done()).then(|| some_faces(mesh, |face| self.is_done(face)))
+    }
+
+    /// Whether nothing stays or goes.
+    fn is_all_done(&self) -> bool {
+        self.kept.is_empty() && self.region.is_empty()
     }
 
     /// Whether a face of the input is remeshed.

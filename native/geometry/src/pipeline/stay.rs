@@ -1,6 +1,6 @@
 //! Faces of the input that go out as they came, after those that are made.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use glam::DVec3;
 
@@ -44,6 +44,8 @@ pub struct Staying {
     made: BTreeMap<VertexId, VertexId>,
     /// What is made between the ends of edges.
     between: BTreeMap<[VertexId; 2], Vec<VertexId>>,
+    /// Whether what was made has their vertices, and so their data there.
+    is_exact: bool,
 }
 
 /// Vertices that were made where faces stay, by the places of these.
@@ -79,7 +81,14 @@ impl Staying {
             vertices,
             made,
             between,
+            is_exact: false,
         }
+    }
+
+    /// The same where what is made was given the vertices of faces that somebody keeps.
+    #[must_use]
+    pub fn exactly(self, is_exact: bool) -> Self {
+        Self { is_exact, ..self }
     }
 
     pub fn n_faces(&self) -> usize {
@@ -113,6 +122,9 @@ impl Staying {
         }
         if let Some(origins) = &mut made.origins {
             let (of_vertices, of_corners) = self.corners(input.mesh, &made.mesh);
+            if self.is_exact {
+                self.own_vertices(input.mesh, &mut origins.vertices);
+            }
             origins
                 .vertices
                 .extend(of_vertices.into_iter().map(Origin::of));
@@ -121,6 +133,9 @@ impl Staying {
             }
             origins.faces.extend_from_slice(&self.faces);
         }
+        let sorted = |[a, b]: [VertexId; 2]| [a.min(b), a.max(b)];
+        let there = made.carried.iter().filter(|_| self.is_exact);
+        let there: BTreeSet<_> = there.map(|edge| sorted(edge.ends)).collect();
         let carried = self.carried(input).into_iter().flat_map(|edge| {
             let [a, b] = edge.ends;
             let along = [
@@ -135,7 +150,20 @@ impl Staying {
             });
             pieces.collect::<Vec<_>>()
         });
+        let carried = carried.filter(|edge| !there.contains(&sorted(edge.ends)));
         made.carried.extend(carried);
+    }
+
+    /// Has vertices that were made where faces stay come from corners of these.
+    fn own_vertices(&self, mesh: &PolygonMesh, origins: &mut [Origin]) {
+        for &face in &self.faces {
+            let first = mesh.starts()[face.index()];
+            for (corner, v) in (first..).zip(mesh.face(face)) {
+                if let Some(name) = self.made.get(v) {
+                    origins[name.index()] = Origin::of(corner);
+                }
+            }
+        }
     }
 
     /// A corner of the input at each vertex that is not made, and where each corner comes from.

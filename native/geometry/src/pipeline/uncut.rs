@@ -177,12 +177,14 @@ mod tests {
                         reduced: None,
                         marks: &marks,
                         sides: &marks,
+                        line: &marks,
                         density: &density,
                         strokes: crate::pipeline::strokes::OnPart::none(),
                         has_tubes: false,
                         is_one_of_many: false,
                     };
-                    let whole = Whole::new(mesh.clone(), (&settings, &marks), &quiet).unwrap();
+                    let whole =
+                        Whole::new(mesh.clone(), (&settings, &marks, &marks), &quiet).unwrap();
                     let laid = wanted.uncut(&whole, &mut Clock::default(), &quiet).unwrap();
                     let made = &laid.deformed.mesh;
                     let found = topology(made, &quiet).unwrap();

@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::fault::Fault;
 use super::flowed::Flowed;
 use super::mirror::{Mirror, Plane};
+use super::region::KeptFaces;
 use super::report::{Mirrored, PartReport, Rejoined};
 use super::settings::Settings;
 use crate::measure::cut_polygon;
@@ -46,6 +47,7 @@ pub(super) struct Made<'a> {
     /// The share of the marked edges that no edge lies along.
     pub lost_marks: f64,
     pub rejoined: Option<Rejoined>,
+    pub kept_faces: Option<KeptFaces>,
 }
 
 impl From<Fault> for Warning {
@@ -81,6 +83,8 @@ pub(super) fn warnings(
         made.mirror(settings),
         made.lines(settings),
         made.rejoined.and_then(Rejoined::fault),
+        made.kept_faces.and_then(KeptFaces::fault),
+        made.kept_faces.and_then(KeptFaces::mirror_fault),
         made.network(),
     ];
     Ok(faults.into_iter().flatten().map(Warning::from).collect())

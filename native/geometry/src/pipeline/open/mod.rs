@@ -44,6 +44,7 @@ use crate::deform::Target;
 use crate::measure::{FeatureLine, Polyline, Topology};
 use crate::mesh::{FaceMap, HalfedgeMap, TriangleMesh, VertexId, VertexMap};
 pub use closing::{Closing, Small};
+pub use mend::untangled;
 use puncture::Puncture;
 pub use reopen::Lines;
 pub use rings::{Loose, Regions};

@@ -35,7 +35,7 @@ impl Whole {
     /// A part that cannot be closed; when cancelled.
     pub fn new(
         part: TriangleMesh,
-        (settings, marks): (&Settings, &Marks),
+        (settings, marks, line): (&Settings, &Marks, &Marks),
         progress: &Progress<'_>,
     ) -> Result<Self, Error> {
         let shape = topology_of_triangles(&part);
@@ -62,7 +62,10 @@ impl Whole {
             whole.mesh = sealed.mesh;
         }
         let fill = settings.close().fill;
-        let filled = close::fill(&whole.mesh, |b| fill.takes(&whole.mesh, b), progress)?;
+        let is_line = line.on(&whole.mesh);
+        let is_free = |border: &[HalfedgeId]| !border.iter().any(|&h| is_line[h]);
+        let is_filled = |border: &[HalfedgeId]| fill.takes(&whole.mesh, border) && is_free(border);
+        let filled = close::fill(&whole.mesh, is_filled, progress)?;
         whole.mesh = filled.mesh;
         whole.shape = topology_of_triangles(&whole.mesh);
         let more = whole.mesh.face_ids().skip(n_first);
@@ -122,7 +125,12 @@ mod tests {
 
     fn whole(mesh: &TriangleMesh, settings: &Settings) -> Whole {
         let nothing = Marks::default();
-        Whole::new(mesh.clone(), (settings, &nothing), &Progress::none()).unwrap()
+        Whole::new(
+            mesh.clone(),
+            (settings, &nothing, &nothing),
+            &Progress::none(),
+        )
+        .unwrap()
     }
 
     /// A torus of wavy rings, so that no edges go straight round its tube.

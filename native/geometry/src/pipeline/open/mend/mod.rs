@@ -29,6 +29,26 @@ pub(super) struct Bed<'a> {
     is_corner: &'a dyn Fn(glam::DVec3) -> bool,
 }
 
+/// A mesh with inverted quads opened as far as vertices inside can do that.
+///
+/// # Errors
+/// When cancelled.
+pub fn untangled(
+    mesh: &PolygonMesh,
+    target: &Target,
+    progress: &Progress<'_>,
+) -> Result<PolygonMesh, Cancelled> {
+    if !mesh.faces().any(|face| is_inverted(mesh, face)) {
+        return Ok(mesh.clone());
+    }
+    let bed = Bed {
+        target,
+        line: None,
+        is_corner: &|_| true,
+    };
+    Ok(mesh.with_positions(bed.untangled(mesh, progress)?))
+}
+
 impl Opening {
     /// The same with as few inverted quads as can be; where there are none, as it is.
     ///
