@@ -25,7 +25,7 @@ use super::uncut::edges;
 use crate::deform::{Deformed, Target};
 use crate::elementary::ln;
 use crate::measure::PolygonEdges;
-use crate::mesh::{HalfedgeId, Id, PolygonMesh, VertexId};
+use crate::mesh::{HalfedgeId, Id, PolygonMesh, TriangleMesh, VertexId};
 use crate::pair::{self, Cut, Layout, squareness};
 use crate::progress::Progress;
 use places::{places, sphere};
@@ -54,7 +54,7 @@ const MOST_UNEVEN_OF_EVEN: f64 = 0.15;
 /// may have; those of others are not asked for.
 pub fn sides(prepared: &Prepared, input: &PolygonMesh, settings: &Settings) -> Marks {
     let mesh = &prepared.mesh;
-    if mesh.n_faces() > 2 * most_faces(settings.faces) {
+    if !is_coarse(mesh, settings.faces) {
         return Marks::default();
     }
     let corners = |h: HalfedgeId| input.face(prepared.input_face(h.face())).len();
@@ -66,6 +66,11 @@ pub fn sides(prepared: &Prepared, input: &PolygonMesh, settings: &Settings) -> M
     };
     let sides = mesh.halfedge_ids().filter(is_side);
     Marks::at(sides.map(|h| [mesh.origin(h), mesh.target(h)].map(|v| mesh.position(v))))
+}
+
+/// Whether triangles in pairs are no more than asked for, within the share that counts may be off.
+fn is_coarse(mesh: &TriangleMesh, n_asked: usize) -> bool {
+    mesh.n_faces() as f64 <= 2.0 * (1.0 + MOST_OFF) * n_asked as f64
 }
 
 /// So many faces are about as many as asked for.
@@ -90,7 +95,7 @@ impl Wanted<'_> {
         let is_wanted = self.settings.own_quads
             && self.settings.kind == Kind::Quads
             && self.settings.primitive() == Primitive::Flow
-            && mesh.n_faces() <= 2 * most_faces(self.n_faces)
+            && is_coarse(mesh, self.n_faces)
             && self.strokes.is_empty()
             && self.density.on(mesh).is_none();
         if !is_wanted {
