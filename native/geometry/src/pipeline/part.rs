@@ -86,7 +86,8 @@ impl PartJob<'_> {
             area: measure::total_area(&part),
         };
         let stage = progress.part("close", 0.0, 0.02);
-        let whole = || Whole::new(part, (wanted.settings, wanted.marks), &stage);
+        let asked = (wanted.settings, wanted.n_faces, wanted.marks);
+        let whole = || Whole::new(part, asked, &stage);
         let mut whole = clock.step("close", whole)?;
         let filling = std::mem::take(&mut whole.filling);
         let made = if whole.is_open() {
