@@ -181,7 +181,8 @@ mod tests {
                         has_tubes: false,
                         is_one_of_many: false,
                     };
-                    let whole = Whole::new(mesh.clone(), (&settings, n_faces, &marks), &quiet).unwrap();
+                    let whole =
+                        Whole::new(mesh.clone(), (&settings, n_faces, &marks), &quiet).unwrap();
                     let laid = wanted.uncut(&whole, &mut Clock::default(), &quiet).unwrap();
                     let made = &laid.deformed.mesh;
                     let found = topology(made, &quiet).unwrap();
