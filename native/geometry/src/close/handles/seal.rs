@@ -23,8 +23,7 @@ use crate::progress::Progress;
 
 /// Roots are no farther from each other than this share of the longest loop.
 const SPACING: f64 = 0.25;
-/// Wide tunnels are looked for from so many fewer, and once all over the surface: that is most of
-/// the time.
+/// Wide tunnels are looked for from so many fewer, as what is near a root is more.
 const SPACING_WIDE: f64 = 0.5;
 /// Loops of edges are so much longer than tight ones at most: drawing them tight takes most of the time.
 const CROOKED: f64 = 1.4;
@@ -109,6 +108,7 @@ pub fn seal(
         pieces: Pieces::whole(mesh),
         is_side: vec![false; mesh.n_vertices()],
         n_left: genus as usize,
+        is_thorough: !limits.is_wide(),
     };
     for limits in limits.stages().filter(|limits| limits.longest() > 0.0) {
         seal = seal.run(limits, &progress.part("", 0.0, 0.9))?;
@@ -132,6 +132,8 @@ struct Seal {
     /// Which vertices lie on cuts.
     is_side: Vec<bool>,
     n_left: usize,
+    /// Whether all is looked at again once nothing is found where loops were.
+    is_thorough: bool,
 }
 
 impl Seal {
@@ -150,7 +152,7 @@ impl Seal {
             let (found, roots) = candidates(mesh, (limits, near.as_deref()), progress)?;
             let chosen = apart(mesh, &found, progress)?;
             if chosen.is_empty() {
-                if is_everywhere || limits.is_wide() {
+                if is_everywhere || !self.is_thorough {
                     break;
                 }
                 near = None;
