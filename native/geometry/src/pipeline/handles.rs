@@ -97,16 +97,16 @@ mod tests {
                 ..solid.clone()
             };
             let limits = settings.sealed_up_to(edge).unwrap();
-            [limits.any, limits.tunnels].map(|size| (1000.0 * size).round())
+            [limits.any, limits.tunnels].map(|size| (1000.0 * size).round() as usize)
         };
         let asked = Handles::SealUpTo;
         assert_eq!(Settings::default().sealed_up_to(0.1), None);
-        assert_eq!(sealed(Handles::Keep, 0.001), [30.0, 30.0]);
-        assert_eq!(sealed(asked(5.0), 0.001), [50.0, 50.0]);
-        assert_eq!(sealed(asked(1.0), 0.001), [30.0, 30.0]);
+        assert_eq!(sealed(Handles::Keep, 0.001), [30, 30]);
+        assert_eq!(sealed(asked(5.0), 0.001), [50, 50]);
+        assert_eq!(sealed(asked(1.0), 0.001), [30, 30]);
         // Tunnels that quads have no room in, but none that is a shape.
-        assert_eq!(sealed(Handles::Keep, 0.01), [30.0, 50.0]);
-        assert_eq!(sealed(Handles::Keep, 0.1), [30.0, 120.0]);
+        assert_eq!(sealed(Handles::Keep, 0.01), [30, 50]);
+        assert_eq!(sealed(Handles::Keep, 0.1), [30, 120]);
     }
 
     #[test]
