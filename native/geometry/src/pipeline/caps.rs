@@ -27,7 +27,7 @@ impl Wanted<'_> {
         let can_have_tubes = self.settings.primitive() == Primitive::Flow;
         let share = if can_have_tubes { 0.9 } else { 1.0 };
         let first = self.run((whole.clone(), came), clock, &progress.part("", 0.0, share));
-        let lacks = first.as_ref().map_or(true, lacks_lines);
+        let lacks = first.as_ref().map_or(true, |found| self.lacks_lines(found));
         if !can_have_tubes || !lacks || !has_few_lines(whole) {
             return first;
         }
@@ -45,21 +45,24 @@ impl Wanted<'_> {
     }
 }
 
+impl Wanted<'_> {
+    /// Whether quads do not lie along all borders, or do not flow, on a part that was not doubled. Of
+    /// what was made solid all borders are cuts, and rings were asked for.
+    fn lacks_lines(&self, found: &PartResult) -> bool {
+        let way = found.report.opened.and_then(|opened| opened.way);
+        way != Some(Closure::Doubled)
+            && match &found.report.flow {
+                Some(Flowed::Refused { .. }) => true,
+                Some(flowed) => flowed.n_rings() > 0 && !self.settings.solid,
+                None => false,
+            }
+    }
+}
+
 /// Whether a part has so few borders, with those of cuts, that all may be met.
 fn has_few_lines(whole: &Whole) -> bool {
     let n_handles = whole.shape.genus.unwrap_or(0).max(0) as usize;
     2 * n_handles + whole.shape.n_borders <= MOST_LINES
-}
-
-/// Whether quads do not lie along all borders, or do not flow, on a part that was not doubled.
-fn lacks_lines(found: &PartResult) -> bool {
-    let way = found.report.opened.and_then(|opened| opened.way);
-    way != Some(Closure::Doubled)
-        && match &found.report.flow {
-            Some(Flowed::Refused { .. }) => true,
-            Some(flowed) => flowed.n_rings() > 0,
-            None => false,
-        }
 }
 
 /// How many lines are not met; of quads that do not flow none is.

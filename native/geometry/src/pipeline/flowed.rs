@@ -99,6 +99,11 @@ impl FlowedPart {
         Ok(self)
     }
 
+    /// How many quads are inverted.
+    pub fn n_inverted(&self) -> usize {
+        self.deformed.report.n_inverted
+    }
+
     /// Whether nothing fails and marked edges are met.
     pub fn is_sound(&self) -> bool {
         self.n_failed() == 0 && self.lost <= WORTH

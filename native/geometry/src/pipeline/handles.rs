@@ -4,13 +4,18 @@ use serde::{Deserialize, Serialize};
 
 use super::borders::MAX_FILL;
 use super::{Error, Settings};
-use crate::close::handles::short_loop;
+use crate::close::handles::{Limits, short_loop};
 use crate::mesh::{Id, TriangleMesh, VertexId};
 use crate::progress::Progress;
 
 /// Round handles that a grid makes go loops of this many cells at most: gaps narrower than a cell are
 /// bridged here and there.
 const CELLS_ROUND: f64 = 6.0;
+/// Tunnels round which go so many edges of quads at most are sealed in what was made solid: cloth,
+/// hair and belts that touch make them, and quads have no way into them.
+const EDGES_ROUND: f64 = 5.0;
+/// But none wider than that share of the diagonal: that is a shape.
+const WIDEST: f64 = 0.12;
 
 /// What becomes of handles.
 #[derive(Clone, Copy, PartialEq, Debug, Default, Serialize, Deserialize)]
@@ -41,15 +46,23 @@ impl Settings {
 }
 
 impl Settings {
-    /// Up to which length, in percent of the diagonal, handles are sealed: those that were asked for,
-    /// and of what was made solid those no longer than a few cells.
-    pub(super) fn sealed_up_to(&self) -> Option<f64> {
+    /// Which handles are sealed of a part whose quads have some edge length, in the frame of work:
+    /// those that were asked for, and of what was made solid those that the grid made, and tunnels
+    /// too narrow for quads.
+    pub(super) fn sealed_up_to(&self, edge: f64) -> Option<Limits> {
         let asked = match self.handles {
-            Handles::Keep => None,
-            Handles::SealUpTo(size) => Some(size),
+            Handles::Keep => 0.0,
+            Handles::SealUpTo(size_pct) => size_pct / 100.0,
         };
-        let of_cells = self.solid.then_some(CELLS_ROUND * self.solid_detail);
-        asked.into_iter().chain(of_cells).reduce(f64::max)
+        if !self.solid {
+            return (asked > 0.0).then(|| Limits::same(asked));
+        }
+        let any = asked.max(CELLS_ROUND * self.solid_detail / 100.0);
+        let tunnels = (EDGES_ROUND * edge).min(WIDEST);
+        Some(Limits {
+            any,
+            tunnels: any.max(tunnels),
+        })
     }
 }
 
@@ -78,17 +91,22 @@ mod tests {
             solid_detail: 0.5,
             ..Settings::default()
         };
-        let sealed = |handles| {
-            Settings {
+        let sealed = |handles, edge| {
+            let settings = Settings {
                 handles,
                 ..solid.clone()
-            }
-            .sealed_up_to()
+            };
+            let limits = settings.sealed_up_to(edge).unwrap();
+            [limits.any, limits.tunnels].map(|size| (1000.0 * size).round() as usize)
         };
-        assert_eq!(Settings::default().sealed_up_to(), None);
-        assert_eq!(sealed(Handles::Keep), Some(3.0));
-        assert_eq!(sealed(Handles::SealUpTo(5.0)), Some(5.0));
-        assert_eq!(sealed(Handles::SealUpTo(1.0)), Some(3.0));
+        let asked = Handles::SealUpTo;
+        assert_eq!(Settings::default().sealed_up_to(0.1), None);
+        assert_eq!(sealed(Handles::Keep, 0.001), [30, 30]);
+        assert_eq!(sealed(asked(5.0), 0.001), [50, 50]);
+        assert_eq!(sealed(asked(1.0), 0.001), [30, 30]);
+        // Tunnels that quads have no room in, but none that is a shape.
+        assert_eq!(sealed(Handles::Keep, 0.01), [30, 50]);
+        assert_eq!(sealed(Handles::Keep, 0.1), [30, 120]);
     }
 
     #[test]

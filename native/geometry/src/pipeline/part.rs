@@ -91,7 +91,9 @@ impl PartJob<'_> {
             area: measure::total_area(&part),
         };
         let stage = progress.part("close", 0.0, 0.02);
-        let whole = || Whole::new(part, (wanted.settings, wanted.marks, wanted.line), &stage);
+        let asked = (wanted.settings, wanted.n_faces);
+        let on_it = (wanted.marks, wanted.line);
+        let whole = || Whole::new(part, asked, on_it, &stage);
         let mut whole = clock.step("close", whole)?;
         let filling = std::mem::take(&mut whole.filling);
         // It takes no time to speak of, and what comes after it where it fails starts here.

@@ -184,7 +184,8 @@ mod tests {
                         is_one_of_many: false,
                     };
                     let whole =
-                        Whole::new(mesh.clone(), (&settings, &marks, &marks), &quiet).unwrap();
+                        Whole::new(mesh.clone(), (&settings, n_faces), (&marks, &marks), &quiet)
+                            .unwrap();
                     let laid = wanted.uncut(&whole, &mut Clock::default(), &quiet).unwrap();
                     let made = &laid.deformed.mesh;
                     let found = topology(made, &quiet).unwrap();

@@ -5,7 +5,8 @@ use super::attempt::Budget;
 use super::clock::Clock;
 use super::even::{self, Marked};
 use super::flow::{Asked, along};
-use super::flowed::FlowedPart;
+use super::flowed::{FlowedPart, better};
+use super::open::Opening;
 use super::paired::told;
 use super::rods;
 use super::sheets::Thick;
@@ -58,21 +59,48 @@ pub fn flow_part(
         from = 0.05;
     }
     let part = progress.part("", from, 1.0);
+    let surface = (map, target);
+    // What was made solid has cuts alone: rings at them cost a third, and quads flow better round them.
+    let mut first = None;
+    if asked.settings.solid {
+        match loosened(surface, asked, budget, (clock, &part))? {
+            Some(found) if found.n_inverted() == 0 => return Ok(Ok(found)),
+            found => first = found,
+        }
+    }
     let mut own = budget;
-    let found = flowing((map, target), asked, &mut own, clock, &part)?;
-    if let (Err(_), Some(opening)) = (&found, asked.opening) {
-        for &loose in opening.ways_to_be_loose() {
-            // Lines are given up after one attempt, which mostly ends before it costs much.
-            budget = budget.again(own.n_attempts);
-            own = budget;
-            let loosened = Asked { loose, ..asked };
-            let loosened = along((map, target), (loosened, &[]), &mut own, clock, &part)?;
-            if loosened.is_ok() {
-                return Ok(loosened);
-            }
+    let found = flowing(surface, asked, &mut own, clock, &part)?;
+    if let Some(first) = first {
+        return Ok(better(Ok(first), found));
+    }
+    if found.is_err() && !asked.settings.solid {
+        let budget = budget.again(own.n_attempts);
+        if let Some(found) = loosened(surface, asked, budget, (clock, &part))? {
+            return Ok(Ok(found));
         }
     }
     Ok(found)
+}
+
+/// Quads of a closed part some lines of which are given up: most often one attempt, which mostly ends
+/// before it costs much.
+fn loosened(
+    surface: (&SphereMap, &Target),
+    asked: Asked<'_>,
+    mut budget: Budget,
+    (clock, progress): (&mut Clock, &Progress<'_>),
+) -> Result<Option<FlowedPart>, Cancelled> {
+    let ways = asked.opening.map_or(&[][..], Opening::ways_to_be_loose);
+    for &loose in ways {
+        let mut own = budget;
+        let loosened = Asked { loose, ..asked };
+        let found = along(surface, (loosened, &[]), &mut own, clock, progress)?;
+        if let Ok(found) = found {
+            return Ok(Some(found));
+        }
+        budget = budget.again(own.n_attempts);
+    }
+    Ok(None)
 }
 
 /// Quads off a flat metric: along all edges of a solid, if it is one, else the usual way.

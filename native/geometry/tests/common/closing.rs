@@ -43,7 +43,8 @@ fn closes(part: &TriangleMesh) {
     let filled = topology_of_triangles(&filled.mesh);
     assert_eq!((filled.closed, filled.genus), (true, Some(genus)));
     for size in [0.3, 3.0] {
-        let sealed = handles::seal(part, size, &quiet).expect("one surface can be sealed");
+        let sealed = handles::seal(part, handles::Limits::same(size), &quiet)
+            .expect("one surface can be sealed");
         let left = topology_of_triangles(&sealed.mesh);
         assert_eq!(left.n_borders, shape.n_borders);
         assert_eq!(left.n_components, 1);

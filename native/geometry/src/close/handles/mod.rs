@@ -30,7 +30,7 @@ use crate::mesh::{FaceId, FaceMap, HalfedgeId, HalfedgeMap, TriangleMesh, Vertex
 use crate::progress::{Cancelled, Progress};
 
 use lay::lay;
-pub use seal::{Sealed, seal};
+pub use seal::{Limits, Sealed, seal};
 use search::{Loop, Search};
 use slit::slit;
 use split::{Pieces, Place};

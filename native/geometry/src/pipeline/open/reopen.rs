@@ -150,12 +150,14 @@ impl Opening {
         let halves =
             (2..corners.len()).map(|i| area_vector([corners[0], corners[i - 1], corners[i]]));
         let area = halves.sum::<DVec3>();
-        let away = |real: bool| {
+        let nearest = |real: bool, limit: f64| {
             let is_wanted = |face| self.is_real[face] == real && target.looks_along(face, area);
-            let found = target.bvh().closest_where(middle, f64::INFINITY, is_wanted);
+            let found = target.bvh().closest_where(middle, limit, is_wanted);
             found.map_or(f64::INFINITY, |found| found.distance_squared)
         };
-        if away(true) <= away(false) {
+        // What is virtual is looked for no farther: the way to the next cap is long.
+        let real = nearest(true, f64::INFINITY);
+        if real <= nearest(false, real) {
             area.length()
         } else {
             -area.length()

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::close::{self, handles};
-use crate::measure::{Topology, topology_of_triangles};
+use crate::measure::{Topology, topology_of_triangles, total_area};
 use crate::mesh::{HalfedgeId, HalfedgeMap, TriangleMesh};
 use crate::pipeline::borders::Opened;
 use crate::pipeline::marks::Marks;
@@ -28,14 +28,15 @@ pub struct Whole {
 }
 
 impl Whole {
-    /// Seals and fills what the settings say; handles first, so that what is left of them is filled
+    /// Seals and fills what the settings say of a part that is to get so many faces; handles first, so that what is left of them is filled
     /// like any border.
     ///
     /// # Errors
     /// A part that cannot be closed; when cancelled.
     pub fn new(
         part: TriangleMesh,
-        (settings, marks, line): (&Settings, &Marks, &Marks),
+        (settings, n_faces): (&Settings, usize),
+        (marks, line): (&Marks, &Marks),
         progress: &Progress<'_>,
     ) -> Result<Self, Error> {
         let shape = topology_of_triangles(&part);
@@ -53,8 +54,9 @@ impl Whole {
         let n_part = whole.mesh.n_faces();
         let mut n_first = n_part;
         let mut n_sealed = 0;
-        if let (Some(size_pct), true) = (settings.sealed_up_to(), whole.has_handles()) {
-            let sealed = handles::seal(&whole.mesh, size_pct / 100.0, progress)?;
+        let edge = (total_area(&whole.mesh) / n_faces.max(1) as f64).sqrt();
+        if let (Some(limits), true) = (settings.sealed_up_to(edge), whole.has_handles()) {
+            let sealed = handles::seal(&whole.mesh, limits, progress)?;
             n_sealed = sealed.n_sealed;
             n_first = sealed.sides.len() / 3;
             let marked = (&whole.mesh, marks);
@@ -125,12 +127,9 @@ mod tests {
 
     fn whole(mesh: &TriangleMesh, settings: &Settings) -> Whole {
         let nothing = Marks::default();
-        Whole::new(
-            mesh.clone(),
-            (settings, &nothing, &nothing),
-            &Progress::none(),
-        )
-        .unwrap()
+        let asked = (settings, 100);
+        let on_it = (&nothing, &nothing);
+        Whole::new(mesh.clone(), asked, on_it, &Progress::none()).unwrap()
     }
 
     /// A torus of wavy rings, so that no edges go straight round its tube.

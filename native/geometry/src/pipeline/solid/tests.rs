@@ -1,6 +1,7 @@
 use super::*;
 use crate::embed::Solver;
 use crate::mesh::FaceId;
+use crate::pipeline::Flowed;
 use crate::shapes;
 
 /// Two balls that intersect, and a small one in them: materials 0, 1 and 2.
@@ -126,4 +127,35 @@ fn details_out_of_range_and_grids_too_fine_are_refused_with_numbers() {
         assert_eq!(told(wrong), text);
     }
     assert!(told(0.02).starts_with("so fine a grid would meet the surface in about"));
+}
+
+#[test]
+fn a_handle_gets_rings_and_a_tunnel_without_room_for_quads_is_sealed() {
+    for (tube, detail, genus, n_sealed) in [(0.4, 2.0, 1, None), (0.93, 1.0, 0, Some(1))] {
+        let ring = shapes::torus(64, 48);
+        // From the middle of the tube of the shape to that of this one.
+        let wider = |p: &DVec3| {
+            let middle = DVec3::new(p.x, p.y, 0.0).normalize_or_zero();
+            middle + (*p - middle) * (tube / 0.4)
+        };
+        let points = ring.positions().iter().map(wider).collect();
+        let faces: Vec<[u32; 3]> = ring.faces().iter().map(|f| f.map(|v| v.0)).collect();
+        let mesh = PolygonMesh::from_faces(points, &faces).unwrap();
+        let wanted = Settings {
+            faces: 400,
+            solid: true,
+            solid_detail: detail,
+            ..Settings::default()
+        };
+        let report = made(Input::new(&mesh), &wanted).report;
+        assert_eq!(report.output.genus, Some(genus));
+        let part = &report.parts[0];
+        let sealed = part.opened.map(|opened| opened.n_sealed).filter(|&n| n > 0);
+        assert_eq!(sealed, n_sealed);
+        assert_eq!(part.deform.n_inverted, 0);
+        let Some(Flowed::Used { n_rings, .. }) = &part.flow else {
+            panic!("{:?}", part.flow);
+        };
+        assert_eq!(*n_rings, 2 * genus as usize);
+    }
 }
