@@ -169,17 +169,17 @@ def marks() -> Waits:
     yield from hand.search("orbflow")
     yield from scene.until_done()
     for name in ("show_irregular", "show_crosses", "show_size"):
-        before = hand.of_region(hand.picture()).astype(int)
+        before = hand.of_view(hand.picture()).astype(int)
         yield from hand.push(f"orbflow.{name}")
         yield from hand.move(hand.middle(up=0.1))
         yield 0.5
         assert getattr(bpy.context.scene.orbflow, name), name
-        shown = hand.of_region(hand.picture()).astype(int)
+        shown = hand.of_view(hand.picture()).astype(int)
         assert scene.n_changed(before, shown) > 100, f"{name} draws nothing"
         yield from hand.push(f"orbflow.{name}")
         yield from hand.move(hand.middle(up=0.1))
         yield 0.5
-        assert scene.n_changed(before, hand.of_region(hand.picture())) < 100, name
+        assert scene.n_changed(before, hand.of_view(hand.picture())) < 100, name
 
 
 CHECKS = {

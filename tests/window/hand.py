@@ -217,8 +217,8 @@ def picture(path: Path | None = None) -> Pixels:
     return np.frombuffer(pixels, np.uint8).reshape(height, width, 3)
 
 
-def of_region(pixels: Pixels, kind: str = "WINDOW") -> Pixels:
-    """The pixels of a region of the 3D view."""
-    place, height = region(kind), len(pixels)
-    top = height - place.y - place.height
-    return pixels[top : top + place.height, place.x : place.x + place.width]
+def of_view(pixels: Pixels) -> Pixels:
+    """The pixels of the 3D view beside the sidebar and the toolbar, which lie over it."""
+    whole, left, right = region("WINDOW"), region("TOOLS"), region("UI")
+    top = len(pixels) - whole.y - whole.height
+    return pixels[top : top + whole.height, left.x + left.width : right.x]

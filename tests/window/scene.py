@@ -99,6 +99,18 @@ def ball_and_strip() -> None:
     strip.select_set(True)
 
 
+def cow() -> None:
+    """Spot, the cow of the fixtures, seen from the side."""
+    (path,) = OUT.parent.glob("01_*.blend")
+    with bpy.data.libraries.load(str(path)) as (source, target):
+        target.objects = source.objects
+    for thing in target.objects:
+        if thing.type == "MESH":
+            bpy.context.collection.objects.link(thing)
+            thing.select_set(True)
+            bpy.context.view_layer.objects.active = thing
+
+
 def is_open(editor: str) -> bool:
     """Whether an editor of a kind is in the window."""
     return any(area.type == editor for area in hand.window().screen.areas)
@@ -173,10 +185,10 @@ def open_section(at: int, setting: str) -> Waits:
 
 def clay() -> tuple[float, float]:
     """How much of the left and of the right of the view has the color of clay."""
-    pixels = hand.of_region(hand.picture()).astype(int)
+    pixels = hand.of_view(hand.picture()).astype(int)
     red, green, blue = (pixels[..., i] for i in range(3))
     is_clay = (red > 60) & (red - blue > 0.35 * red) & (red > green) & (green > blue)
-    half = pixels.shape[1] // 2
+    half = hand.region("WINDOW").width // 2 - hand.region("TOOLS").width
     return float(is_clay[:, :half].mean()), float(is_clay[:, half:].mean())
 
 
