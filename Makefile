@@ -16,7 +16,7 @@ SOURCES := $(shell find Cargo.toml Cargo.lock native/*/Cargo.toml native/*/src n
 ADDON := $(shell find addon -type f ! -name "*.pyc")
 
 .SECONDARY: # keep the stamps
-.PHONY: help demo test test-rust test-drawn test-engines test-python wheel zip fixtures pictures bench weights evaluation sets lint package format ci ci-more clean
+.PHONY: help demo test test-rust test-drawn test-engines test-python test-window window-pictures wheel zip fixtures pictures bench weights evaluation sets lint package format ci ci-more clean
 
 help: ## Prints this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -39,6 +39,13 @@ test-engines: ## Runs the tests of training on every engine; a driver in softwar
 
 test-python: dist/zip.stamp $(VENV)/wheel.stamp ## Runs the tests over Blender, the wheel and the zip
 	$(BIN)/python -m pytest
+
+test-window: dist/zip.stamp ## Tries the extension in Blender's window, as before a release; pictures are in dist/window
+	tests/window/run.sh dist/window $(CHECKS)
+
+window-pictures: dist/zip.stamp ## Makes the pictures of Blender's window in docs/pictures/ anew
+	tests/window/run.sh dist/window install pictures
+	cp dist/window/window_*.jpg docs/pictures
 
 wheel: dist/wheel.stamp ## Builds the Python wheel in dist/
 zip: dist/zip.stamp ## Builds this platform's Blender extension, dist/orbflow-*.zip

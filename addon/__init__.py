@@ -36,6 +36,7 @@ _CLASSES = (
     detail.OBJECT_OT_orbflow_bake_detail,
     normal_map.OBJECT_OT_orbflow_bake_normal_map,
     panel.VIEW3D_PT_orbflow,
+    panel.VIEW3D_MT_orbflow,
 )
 
 

@@ -30,6 +30,14 @@ _PLACEHOLDERS = {
     "guides": "Collection or Object",
     "keep_faces": "Group or Face Set",
 }
+# What the menu has beside the run.
+_ENTRIES = (
+    ("object.orbflow_draw_guides", "Draw Guides", "GREASEPENCIL"),
+    ("object.orbflow_paint_density", "Paint Density", "BRUSH_DATA"),
+    ("object.orbflow_bake_detail", "Bake Detail", "MOD_MULTIRES"),
+    ("object.orbflow_bake_normal_map", "Bake Normal Map", "IMAGE_DATA"),
+    ("object.orbflow_before", "Before / After", "ARROW_LEFTRIGHT"),
+)
 _ROWS = (
     ("Faces", "n_faces", "{:,}"),
     ("Quads", "quads_pct", "{:.0f} %"),
@@ -110,10 +118,23 @@ def _draw_detail(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
     body.operator("object.orbflow_bake_normal_map", icon="IMAGE_DATA")
 
 
+class VIEW3D_MT_orbflow(bpy.types.Menu):
+    """What there is beside the run; F3 finds what is in menus alone."""
+
+    # Without the word by which the run is searched for, which is to come first.
+    bl_label = "Guides and Detail"
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        """Draws the entries."""
+        for name, text, icon in _ENTRIES:
+            self.layout.operator(name, text=text, icon=icon)
+
+
 def draw_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
-    """The entry in the Object menu: what is searched for are the words of menus."""
+    """The entries in the Object menu: what is searched for are the words of menus."""
     menu.layout.separator()
     _button(menu.layout, context, "Orbflow Remesh (Quad Retopology)")
+    menu.layout.menu("VIEW3D_MT_orbflow")
 
 
 def _button(
