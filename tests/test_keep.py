@@ -104,8 +104,8 @@ def test_a_region_that_is_not_there_is_said_with_those_that_are(open_fixture: Op
     first = open_fixture("03")
     mark(first, "ATTRIBUTE")
     with pytest.raises(RuntimeError) as caught:
-        press.orbflow_remesh(keep_faces="Fase")
-    text = "no vertex group, face set or face attribute is named 'Fase'; there are: Face"
+        press.orbflow_remesh(keep_faces="Head")
+    text = "no vertex group, face set or face attribute is named 'Head'; there are: Face"
     assert text in str(caught.value)
     assert len(first.data.polygons) == 1280
 

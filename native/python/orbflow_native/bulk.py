@@ -93,11 +93,12 @@ def remesh(
     suits the kind. How quads flow: `follow_shape` from 0 (smooth loops) to 1 (edges along the
     curvature), `adaptivity` from 0 (quads of one size) to 1 (much smaller where the surface is
     bent). Quads of a part that are coarser than what is asked for are cut into finer ones where
-    good ones come of it, unless `own_quads` is off. Edges at which the surface turns by more than `sharp_angle` degrees, and the
-    `marked_edges`, pairs of vertices (E, 2), get edges of the result along them. `density` (V,)
-    goes from 0 to 1: where it is 1, edges of flowing quads are about half as long as where it is
-    0; the number of faces stays what was asked for. `mirror` makes flowing quads their own image
-    across "x", "y" or "z", in the plane through the origin or the middle of the mesh; with "auto"
+    good ones come of it, unless `own_quads` is off. Edges at which the surface turns by more than
+    `sharp_angle` degrees, and the `marked_edges`, pairs of vertices (E, 2), get edges of the result
+    along them. `density` (V,) goes from 0 to 1: where it is 1, edges of flowing quads are about
+    half as long as where it is 0; the number of faces stays what was asked for. `mirror` makes
+    flowing quads their own image across "x", "y" or "z", in the plane through the origin or the
+    middle of the mesh; with "auto"
     across the first in which every vertex, with its density and marks, is the image of another,
     with "off" across none.
     Parts that cannot be done stay as they were: their faces come last and are `kept_faces`, and
