@@ -16,7 +16,7 @@ SOURCES := $(shell find Cargo.toml Cargo.lock native/*/Cargo.toml native/*/src n
 ADDON := $(shell find addon -type f ! -name "*.pyc")
 
 .SECONDARY: # keep the stamps
-.PHONY: help demo test test-rust test-drawn test-engines test-python test-window window-pictures wheel zip fixtures pictures bench weights evaluation sets lint package format ci ci-more clean
+.PHONY: help demo test test-rust test-drawn test-engines test-python test-window window-pictures wheel zip fixtures pictures tutorial bench weights evaluation sets lint package format ci ci-more clean
 
 help: ## Prints this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -56,6 +56,9 @@ fixtures: .venv-3.11/venv.stamp ## Builds every .blend of blend_fixtures/ anew, 
 pictures: $(VENV)/bench.stamp $(VENV)/wheel.stamp ## Makes every picture of docs/pictures/ anew
 	cargo build --release --locked -p orbflow-cli
 	$(BIN)/python tests/pictures/make.py
+
+tutorial: dist/zip.stamp $(VENV)/venv.stamp ## Does the steps of docs/tutorial.md and makes its picture
+	$(BIN)/python tests/pictures/tutorial.py $(DATA) docs/pictures
 
 bench: $(VENV)/bench.stamp ## Measures the figures of docs/benchmarks.md anew
 	cargo build --release --locked -p orbflow-cli
