@@ -81,7 +81,11 @@ def _of_faces(mesh: bpy.types.Mesh, name: str) -> Flags:
     number = name.removeprefix(_FACE_SET)
     if name not in mesh.attributes and name != number:
         sets = attributes.values(mesh, attributes.FACE_SETS, "FACE", "INT")
-        return sets == int(number)
+        return _nothing(mesh) if sets is None else sets == int(number)
     attribute = mesh.attributes[name]
     values = attributes.values(mesh, name, "FACE", attribute.data_type)
-    return values > 0
+    return _nothing(mesh) if values is None else values > 0
+
+
+def _nothing(mesh: bpy.types.Mesh) -> Flags:
+    return np.zeros(len(mesh.polygons), bool)

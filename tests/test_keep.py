@@ -55,8 +55,9 @@ def test_wrong_flags_are_named() -> None:
         orbflow_native.remesh(*mesh, keep_faces=np.zeros(5, bool))
     with pytest.raises(orbflow_native.InputError, match=f"all {n} faces are kept"):
         orbflow_native.remesh(*mesh, keep_faces=np.ones(n, bool))
+    numbers: Any = np.zeros(n, np.float32)
     with pytest.raises(TypeError, match=r"keep_faces must be a \(F,\) bool array"):
-        orbflow_native.remesh(*mesh, keep_faces=np.zeros(n, np.float32))
+        orbflow_native.remesh(*mesh, keep_faces=numbers)
 
 
 def places(mesh: Any) -> list[bytes]:  # noqa: ANN401
