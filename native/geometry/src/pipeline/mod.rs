@@ -52,6 +52,7 @@ mod report;
 mod rods;
 mod scored;
 mod settings;
+mod shares;
 mod sheets;
 mod sides;
 mod small;
