@@ -12,7 +12,7 @@ use orbflow_geometry::measure::{Topology, topology};
 use orbflow_geometry::mesh::io::{Format, read};
 use orbflow_geometry::mesh::{PolygonMesh, VertexId};
 use orbflow_geometry::progress::Progress;
-use serde_json::Value;
+use serde_json::{Value, json};
 use support::{Folder, run};
 
 /// Quads of a square, as OBJ; the sides of its columns may be one.
@@ -139,8 +139,7 @@ fn open_meshes_stay_open_with_their_borders_where_they_were() {
         assert_eq!(after.n_components, 1);
         assert!(off_border(&done.input, &done.output) < 1e-3);
         let opened = &done.report["parts"][0]["opened"];
-        let told =
-            serde_json::json!({"n_borders": n_borders, "n_filled": 0, "way": way, "n_sealed": 0});
+        let told = json!({"n_borders": n_borders, "n_filled": 0, "way": way, "n_sealed": 0});
         assert_eq!(*opened, told);
         assert!(!done.err.contains("filled"), "{}", done.err);
     }
@@ -148,16 +147,28 @@ fn open_meshes_stay_open_with_their_borders_where_they_were() {
 
 #[test]
 fn a_plate_stays_a_plate_with_its_corners() {
-    let done = remesh(&plate(), &["--faces", "96", "--strict"]);
-    let [_, after] = done.topologies();
-    assert_eq!((after.n_borders, after.genus), (1, Some(0)));
-    assert!(off_border(&done.input, &done.output) < 1e-3);
-    for (x, y) in [(0.0, 0.0), (1.5, 0.0), (0.0, 1.0), (1.5, 1.0)] {
-        let is_there = |p: [f64; 3]| (p[0] - x).abs() + (p[1] - y).abs() + p[2].abs() < 1e-5;
-        let mut places = done.output.positions().iter().map(|&p| <[f64; 3]>::from(p));
-        assert!(places.any(is_there), "({x}, {y})");
+    // Its own quads are cut into finer ones, or, where these are not wanted, a sheet flows.
+    let ways = [
+        ("on", "own", json!(null)),
+        ("off", "used", json!("doubled")),
+    ];
+    for (own_quads, status, way) in ways {
+        let asked = ["--faces", "96", "--strict", "--own-quads", own_quads];
+        let done = remesh(&plate(), &asked);
+        let [_, after] = done.topologies();
+        assert_eq!((after.n_borders, after.genus), (1, Some(0)));
+        assert!(off_border(&done.input, &done.output) < 1e-3);
+        for (x, y) in [(0.0, 0.0), (1.5, 0.0), (0.0, 1.0), (1.5, 1.0)] {
+            let is_there = |p: [f64; 3]| (p[0] - x).abs() + (p[1] - y).abs() + p[2].abs() < 1e-5;
+            let mut places = done.output.positions().iter().map(|&p| <[f64; 3]>::from(p));
+            assert!(places.any(is_there), "({x}, {y})");
+        }
+        let part = &done.report["parts"][0];
+        assert_eq!(
+            (&part["flow"]["status"], &part["opened"]["way"]),
+            (&json!(status), &way)
+        );
     }
-    assert_eq!(done.report["parts"][0]["opened"]["way"], "doubled");
 }
 
 #[test]
