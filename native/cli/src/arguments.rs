@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::error::ErrorKind;
-use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use clap::{ArgAction, Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use orbflow_geometry::pipeline::{Kind, Mirror, Primitive, Settings, Style};
 use orbflow_geometry::score;
 
@@ -151,7 +151,7 @@ pub struct Flow {
     pub adaptivity: f64,
     /// Cut quads of a part that are coarser than what is asked for into finer ones, where good ones
     /// come of it; off: make new ones
-    #[arg(long, value_name = "on|off", default_value = "on", value_parser = on_off())]
+    #[arg(long, value_name = "on|off", default_value = "on", action = ArgAction::Set, value_parser = on_off())]
     pub own_quads: bool,
 }
 
