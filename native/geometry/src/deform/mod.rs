@@ -59,7 +59,7 @@ use sheet::Sheet;
 pub use straddle::Anchor;
 use straddle::{Even, Fit};
 pub use target::Target;
-pub use untangle::is_inverted;
+pub use untangle::{is_inverted, n_inverted};
 
 /// A primitive that has become a remeshed surface.
 #[derive(Clone, PartialEq, Debug)]

@@ -95,7 +95,7 @@ pub fn is_inverted(mesh: &PolygonMesh, face: &[VertexId]) -> bool {
 }
 
 /// How many of the quads are inverted.
-pub(super) fn n_inverted(mesh: &PolygonMesh) -> usize {
+pub fn n_inverted(mesh: &PolygonMesh) -> usize {
     mesh.faces().filter(|face| is_inverted(mesh, face)).count()
 }
 

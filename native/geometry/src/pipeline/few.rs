@@ -6,13 +6,12 @@
 use glam::DVec3;
 
 use super::Error;
-use super::laid::Laid;
 use super::open::Whole;
 use super::part::Wanted;
 use super::settings::{Kind, Primitive};
 use super::uncut::edges;
-use crate::deform::{Deformed, Target};
-use crate::mesh::{HalfedgeMap, PolygonMesh, TriangleMesh};
+use crate::deform::Deformed;
+use crate::mesh::HalfedgeMap;
 use crate::pair::{self, Grid};
 use crate::progress::Progress;
 
@@ -42,7 +41,7 @@ impl Wanted<'_> {
     ///
     /// # Errors
     /// When cancelled.
-    pub fn grid(&self, whole: &Whole, progress: &Progress<'_>) -> Result<Option<Laid>, Error> {
+    pub fn grid(&self, whole: &Whole, progress: &Progress<'_>) -> Result<Option<Deformed>, Error> {
         let mesh = &whole.mesh;
         let is_wanted = self.settings.kind == Kind::Quads
             && self.settings.primitive() == Primitive::Flow
@@ -62,19 +61,15 @@ impl Wanted<'_> {
         let Some(grid) = Grid::of(&pairs.quads, &kept) else {
             return Ok(None);
         };
-        in_space(grid.remade(self.n_faces), mesh, progress).map(Some)
+        let quads = grid.remade(self.n_faces);
+        let sphere = vec![DVec3::ZERO; quads.n_vertices()];
+        Ok(Some(Deformed::in_space(
+            quads,
+            sphere,
+            Vec::new(),
+            progress,
+        )?))
     }
-}
-
-fn in_space(
-    quads: PolygonMesh,
-    part: &TriangleMesh,
-    progress: &Progress<'_>,
-) -> Result<Laid, Error> {
-    let target = Target::new(part.clone(), progress)?;
-    let sphere = vec![DVec3::ZERO; quads.n_vertices()];
-    let deformed = Deformed::in_space(quads, sphere, Vec::new(), progress)?;
-    Ok(Laid::new(deformed, None, &target))
 }
 
 #[cfg(test)]

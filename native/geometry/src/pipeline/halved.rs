@@ -12,7 +12,7 @@ use super::part::{PartResult, Wanted};
 use super::probe::farthest;
 use super::report::{Mirrored, PartReport};
 use super::rods::images;
-use crate::deform::{Target, is_inverted};
+use crate::deform::{Target, n_inverted};
 use crate::measure;
 use crate::mesh::{Id, VertexId};
 use crate::mirror::mirrored;
@@ -191,8 +191,7 @@ impl PartResult {
         };
         let places = images.iter().enumerate().map(place).collect();
         self.mesh = self.mesh.with_positions(places);
-        let is_bad = |face: &&[VertexId]| is_inverted(&self.mesh, face);
-        self.report.deform.n_inverted = self.mesh.faces().filter(is_bad).count();
+        self.report.deform.n_inverted = n_inverted(&self.mesh);
         self
     }
 

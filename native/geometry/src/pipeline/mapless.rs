@@ -3,12 +3,13 @@
 use super::Error;
 use super::clock::Clock;
 use super::flowed::Flowed;
-use super::laid::{Instead, Laid};
+use super::laid::Instead;
 use super::mirror::Role;
 use super::open::Whole;
 use super::part::{PartResult, Wanted};
 use super::report::{Mirrored, PartReport};
 use super::settings::Primitive;
+use crate::deform::Deformed;
 use crate::embed;
 use crate::progress::Progress;
 
@@ -29,19 +30,19 @@ impl Wanted<'_> {
         clock: &mut Clock,
         progress: &Progress<'_>,
     ) -> Result<PartResult, Error> {
-        let laid = self.uncut(whole, clock, progress)?;
+        let made = self.uncut(whole, clock, progress)?;
         let flow = (self.settings.primitive() == Primitive::Flow).then_some(Flowed::Refused {
             reason,
             instead: Instead::PairedTriangles,
         });
-        Ok(self.without_map((whole, came), laid, flow))
+        Ok(self.without_map((whole, came), made, flow))
     }
 
     /// Faces that were made without a map.
     pub fn without_map(
         &self,
         (whole, came): (&Whole, Came),
-        laid: Laid,
+        made: Deformed,
         flow: Option<Flowed>,
     ) -> PartResult {
         let of_part = match self.mirror.0 {
@@ -52,7 +53,7 @@ impl Wanted<'_> {
         let report = PartReport {
             n_input_faces: came.n_input_faces,
             n_asked_faces: came.n_asked_faces,
-            n_faces: laid.deformed.mesh.n_faces(),
+            n_faces: made.mesh.n_faces(),
             reduced: None,
             decimate: None,
             opened: whole.told,
@@ -60,12 +61,12 @@ impl Wanted<'_> {
             flow,
             mirrored: of_part.map(|reason| Mirrored::Refused { reason }),
             sphere: None,
-            deform: laid.deformed.report,
+            deform: made.report,
         };
         PartResult {
-            mesh: laid.deformed.mesh,
-            sphere: laid.deformed.sphere,
-            features: laid.deformed.features,
+            mesh: made.mesh,
+            sphere: made.sphere,
+            features: made.features,
             crosses: Vec::new(),
             filling: Vec::new(),
             area: came.area,

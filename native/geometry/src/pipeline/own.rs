@@ -12,7 +12,6 @@ use super::Error;
 use super::clock::Clock;
 use super::flowed::Flowed;
 use super::frame::Prepared;
-use super::laid::Laid;
 use super::mapless::Came;
 use super::marks::Marks;
 use super::mirror::Role;
@@ -22,7 +21,7 @@ use super::report::Mirrored;
 use super::rods::{crosses, images};
 use super::settings::{Kind, Primitive, Settings};
 use super::uncut::edges;
-use crate::deform::{Deformed, Target};
+use crate::deform::Deformed;
 use crate::elementary::ln;
 use crate::measure::PolygonEdges;
 use crate::mesh::{HalfedgeId, Id, PolygonMesh, TriangleMesh, VertexId};
@@ -124,10 +123,8 @@ impl Wanted<'_> {
         let quads = fine.cut.mesh;
         let quads = quads.with_positions(places.iter().map(|place| place.position).collect());
         let deformed = Deformed::in_space(quads, sphere, along, progress)?;
-        let target = Target::new(mesh.clone(), progress)?;
-        let laid = Laid::new(deformed, None, &target);
         let n_strips = fine.n_strips;
-        let mut made = self.without_map((whole, came), laid, Some(Flowed::Own { n_strips }));
+        let mut made = self.without_map((whole, came), deformed, Some(Flowed::Own { n_strips }));
         let n_crosses = self.settings.n_crosses * self.n_faces;
         made.crosses = crosses(&made.mesh, n_crosses.div_ceil(self.settings.faces));
         if let Some(embedded) = closed {

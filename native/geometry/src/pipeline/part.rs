@@ -118,8 +118,8 @@ impl Wanted<'_> {
         clock: &mut Clock,
         progress: &Progress<'_>,
     ) -> Result<PartResult, Error> {
-        if let Some(laid) = self.grid(whole, progress)? {
-            return Ok(self.without_map((whole, came), laid, Some(Flowed::Grid)));
+        if let Some(grid) = self.grid(whole, progress)? {
+            return Ok(self.without_map((whole, came), grid, Some(Flowed::Grid)));
         }
         let reason = self.too_few().or_else(|| self.too_many_handles(whole));
         let made = match reason {

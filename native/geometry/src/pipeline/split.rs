@@ -14,7 +14,7 @@ use super::region::Region;
 use super::stay::some_faces;
 use super::{Error, Inner, Input, Settings, diagnosis, inner, small};
 use crate::clean::{Apart, Cleaned, SharedLine, SharedPoint};
-use crate::mesh::{FaceId, FaceMap, Id, PolygonMesh, TriangleMesh, VertexId, VertexMap, bounds};
+use crate::mesh::{FaceId, FaceMap, PolygonMesh, TriangleMesh, VertexId, VertexMap, bounds};
 use crate::progress::{Cancelled, Progress};
 
 /// The parts of a mesh.
@@ -133,6 +133,8 @@ impl Parts {
             for &face in &part.faces {
                 chosen.part_of[face] = Some(i as u32);
             }
+            let is_beside = |region: &Region| part.faces.iter().any(|&f| region.is_beside(f));
+            let is_beside = region.is_some_and(is_beside);
             if let Some(surface) = part.surface {
                 chosen.of_surfaces[surface] = i;
             }
@@ -143,7 +145,7 @@ impl Parts {
                 }
                 _ => {
                     let mut kept = kept(i, part, settings);
-                    if region.is_some_and(|region| chosen.is_beside(region, i)) {
+                    if is_beside {
                         // Else there would be a hole beside what is kept.
                         kept.outcome = Outcome::Kept;
                     }
@@ -164,14 +166,6 @@ impl Parts {
         }
         let is_done: Vec<bool> = component.iter().map(|&c| is_done[c as usize]).collect();
         Ok((chosen, cleaned.only(&is_done)))
-    }
-
-    /// Whether a part is beside what is kept.
-    fn is_beside(&self, region: &Region, part: usize) -> bool {
-        let mut of_faces = self.part_of.iter().enumerate();
-        of_faces.any(|(face, of)| {
-            *of == Some(part as u32) && region.is_beside(FaceId::from_index(face))
-        })
     }
 
     /// Takes faces that are kept from parts that they were attached to, and keeps them.

@@ -7,7 +7,6 @@ use glam::DVec3;
 
 use super::Error;
 use super::clock::Clock;
-use super::laid::Laid;
 use super::open::Whole;
 use super::part::Wanted;
 use super::settings::Kind;
@@ -72,7 +71,7 @@ impl Wanted<'_> {
         whole: &Whole,
         clock: &mut Clock,
         progress: &Progress<'_>,
-    ) -> Result<Laid, Error> {
+    ) -> Result<Deformed, Error> {
         let per_face = match self.settings.kind {
             Kind::Triangles => 1.0,
             Kind::Quads => 2.0,
@@ -99,8 +98,7 @@ impl Wanted<'_> {
         let mesh = settle(&mesh, (&is_border, OPEN), &target, progress)?;
         // Nothing was embedded.
         let sphere = vec![DVec3::ZERO; mesh.n_vertices()];
-        let deformed = Deformed::in_space(mesh, sphere, kept, progress)?;
-        Ok(Laid::new(deformed, None, &target))
+        Ok(Deformed::in_space(mesh, sphere, kept, progress)?)
     }
 
     /// Faces of so many triangles of the part.
@@ -186,8 +184,8 @@ mod tests {
                     let whole =
                         Whole::new(mesh.clone(), (&settings, n_faces), (&marks, &marks), &quiet)
                             .unwrap();
-                    let laid = wanted.uncut(&whole, &mut Clock::default(), &quiet).unwrap();
-                    let made = &laid.deformed.mesh;
+                    let made = wanted.uncut(&whole, &mut Clock::default(), &quiet).unwrap();
+                    let made = &made.mesh;
                     let found = topology(made, &quiet).unwrap();
                     assert_eq!((found.genus, found.n_borders), (Some(1), n_borders));
                     assert!(10 * made.n_faces().abs_diff(n_faces) <= n_faces);

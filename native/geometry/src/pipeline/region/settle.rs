@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::deform::{self, Target, is_inverted};
+use crate::deform::{self, Target};
 use crate::graft::Grafted;
 use crate::measure::PolygonEdges;
 use crate::mesh::{Id, PolygonMesh, VertexId};
@@ -50,13 +50,13 @@ pub fn settled(
         is_bound[i] |= !is_near;
     }
     let settled = settled_where((mesh, &is_bound), target, progress)?;
-    let n_inverted = n_inverted(&settled);
+    let n_inverted = deform::n_inverted(&settled);
     if n_inverted == 0 || is_bound == is_fixed {
         return Ok(settled);
     }
     // Lines that end beside what is kept may leave no room.
     let other = settled_where((mesh, &is_fixed), target, progress)?;
-    Ok(if self::n_inverted(&other) < n_inverted {
+    Ok(if deform::n_inverted(&other) < n_inverted {
         other
     } else {
         settled
@@ -72,10 +72,6 @@ fn settled_where(
     let smooth = smoothed((mesh, is_fixed), target, progress)?;
     let settled = deform::settle(&smooth, (is_fixed, ENOUGH), target, progress)?;
     open::untangled(&settled, target, progress)
-}
-
-fn n_inverted(mesh: &PolygonMesh) -> usize {
-    mesh.faces().filter(|face| is_inverted(mesh, face)).count()
 }
 
 /// Vertices in the middle of their neighbours, on the surface.
