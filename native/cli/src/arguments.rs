@@ -149,7 +149,7 @@ pub struct Flow {
     /// How much smaller quads are where the surface is bent: 0 for one size
     #[arg(long, value_name = "SHARE", default_value_t = Style::default().adaptivity, value_parser = share)]
     pub adaptivity: f64,
-    /// Cut quads of a part that are coarser than what is asked for into finer ones, where good ones
+    /// Keep a part's own quads, cut into finer ones or without some strips of them, where good ones
     /// come of it; off: make new ones
     #[arg(long, value_name = "on|off", default_value = "on", action = ArgAction::Set, value_parser = on_off())]
     pub own_quads: bool,

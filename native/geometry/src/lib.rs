@@ -38,6 +38,7 @@
 //! # }
 //! ```
 
+pub mod chords;
 pub mod clean;
 pub mod close;
 pub mod decimate;

@@ -10,6 +10,7 @@ const FLOORS: [&[&str]; 5] = [
     &["elementary", "progress"],
     &["groups", "mesh", "random", "sparse"],
     &[
+        "chords",
         "guidance",
         "hierarchy",
         "measure",

@@ -92,8 +92,8 @@ def remesh(
     "triangles"; `primitive` is "flow", "quad-sphere", "adaptive", "icosphere" or `None` for what
     suits the kind. How quads flow: `follow_shape` from 0 (smooth loops) to 1 (edges along the
     curvature), `adaptivity` from 0 (quads of one size) to 1 (much smaller where the surface is
-    bent). Quads of a part that are coarser than what is asked for are cut into finer ones where
-    good ones come of it, unless `own_quads` is off. Edges at which the surface turns by more than
+    bent). A part keeps its own quads, cut into finer ones or without some strips, where good ones
+    come of it, unless `own_quads` is off. Edges at which the surface turns by more than
     `sharp_angle` degrees, and the `marked_edges`, pairs of vertices (E, 2), get edges of the result
     along them. `density` (V,) goes from 0 to 1: where it is 1, edges of flowing quads are about
     half as long as where it is 0; the number of faces stays what was asked for. `mirror` makes

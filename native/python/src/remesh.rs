@@ -51,8 +51,8 @@ pub struct Remeshed {
 /// Keeps the topology, the direction of the faces and their materials. `scale` is the scale of the
 /// object: faces are even in the scaled space, the result is in the space of the input.
 /// How quads flow: `follow_shape` from 0 (smooth loops) to 1 (edges along the curvature), `adaptivity`
-/// from 0 (quads of one size) to 1 (much smaller where the surface is bent). Quads of a part that are
-/// coarser than what is asked for are cut into finer ones where good ones come of it: `own_quads`.
+/// from 0 (quads of one size) to 1 (much smaller where the surface is bent). A part
+/// keeps its own quads, cut into finer ones or without some strips, where good ones come of it: `own_quads`.
 /// Edges at which the surface turns by more than `sharp_angle` degrees, and the `marked_edges`
 /// `(E, 2) int32`, get edges of the result along them. `density` `(V,) float32` goes from 0 to 1:
 /// where it is 1, edges of flowing quads are about half as long as where it is 0. `mirror` makes flowing quads their own image

@@ -98,6 +98,12 @@ impl<'a> Layout<'a> {
         Some(layout)
     }
 
+    /// The share of quads that one strip crosses twice.
+    pub fn spiral(&self) -> f64 {
+        let crossed = self.strips.iter().filter(|[u, v]| u == v);
+        crossed.count() as f64 / self.strips.len().max(1) as f64
+    }
+
     /// How many strips there are.
     pub fn n_strips(&self) -> usize {
         self.lengths.len()
@@ -213,19 +219,22 @@ impl<'a> Layout<'a> {
 }
 
 impl Cut {
+    /// The vertices on a coarse edge, smaller end first, its ends among them.
+    pub fn on(&self, edge: Edge) -> Vec<usize> {
+        let Some(&[first, n]) = self.on_edge.get(&edge) else {
+            return Vec::new();
+        };
+        let inner = first..first + n - 1;
+        let [a, b] = edge.map(Id::index);
+        [a].into_iter().chain(inner).chain([b]).collect()
+    }
+
     /// The finer edges that lie along coarse ones, each once, smaller end first, in order.
     pub fn along(&self, edges: &[Edge]) -> Vec<Edge> {
         let mut along = Vec::new();
         for edge in edges {
-            let Some(&[first, n]) = self.on_edge.get(edge) else {
-                continue;
-            };
-            let inner = (first..first + n - 1).map(VertexId::from_index);
-            let line: Vec<VertexId> = [edge[0]]
-                .into_iter()
-                .chain(inner)
-                .chain([edge[1]])
-                .collect();
+            let on = self.on(*edge);
+            let line: Vec<VertexId> = on.into_iter().map(VertexId::from_index).collect();
             along.extend(line.windows(2).map(|w| sorted([w[0], w[1]])));
         }
         along.sort_unstable();

@@ -1,5 +1,7 @@
 //! Does every part by itself.
 
+use std::collections::HashSet;
+
 use super::clock::Clock;
 use super::density::Density;
 use super::frame::Prepared;
@@ -7,6 +9,7 @@ use super::join::{self, Joined};
 use super::marks::Marks;
 use super::meet::Meetings;
 use super::mirror::{self, Plane, Role};
+use super::own;
 use super::part::{PartJob, PartResult, Wanted};
 use super::region::Region;
 use super::report::Mirrored;
@@ -52,7 +55,8 @@ impl Common<'_> {
         let parts = clock.step("split", || components(mesh, progress))?;
         let amounts: Vec<f64> = parts.iter().map(|part| self.density.amount(part)).collect();
         let settings = self.settings;
-        let shares = share(&amounts, settings.faces, settings.kind.fewest_faces());
+        let least = self.least(&parts);
+        let shares = share(&amounts, settings.faces, &least);
         let reduced = self.reduced.filter(|_| parts.len() == 1);
         let entered = |mesh: &PolygonMesh| self.prepared.frame.enter(mesh.positions());
         let reduced = reduced.map(|mesh| mesh.with_positions(entered(mesh)));
@@ -87,6 +91,26 @@ impl Common<'_> {
             };
         }
         Ok(Each(made))
+    }
+}
+
+impl Common<'_> {
+    /// The fewest faces of each part: what closes it; and of one in quads no smaller share of them than
+    /// of all faces, so that others get no more at its cost.
+    fn least(&self, parts: &[TriangleMesh]) -> Vec<usize> {
+        let fewest = self.settings.kind.fewest_faces();
+        let mesh = &self.prepared.mesh;
+        let polygons: HashSet<_> = mesh
+            .face_ids()
+            .map(|f| self.prepared.input_face(f))
+            .collect();
+        let whole = polygons.len().min(mesh.n_faces() / 2);
+        let share = (self.settings.faces as f64 / whole.max(1) as f64).min(1.0);
+        let own = |part| own::n_quads(part, self.sides).unwrap_or(0) as f64;
+        parts
+            .iter()
+            .map(|part| fewest.max((share * own(part)) as usize))
+            .collect()
     }
 }
 

@@ -36,6 +36,15 @@ impl Wanted<'_> {
             .then(|| format!("{} quads are too few to flow", self.n_faces))
     }
 
+    /// Whether an open part stays a grid, if it is one.
+    pub(super) fn may_be_grid(&self, whole: &Whole) -> bool {
+        self.settings.kind == Kind::Quads
+            && self.settings.primitive() == Primitive::Flow
+            && self.n_faces <= MOST_OF_GRID
+            && whole.mesh.n_faces() <= TRIANGLES_PER_QUAD * self.n_faces
+            && (whole.shape.n_borders, whole.shape.genus) == (1, Some(0))
+    }
+
     /// The quads of an open part that is a grid already, if it is one. Lines of it that are sharp or
     /// marked stay lines.
     ///
@@ -43,12 +52,7 @@ impl Wanted<'_> {
     /// When cancelled.
     pub fn grid(&self, whole: &Whole, progress: &Progress<'_>) -> Result<Option<Deformed>, Error> {
         let mesh = &whole.mesh;
-        let is_wanted = self.settings.kind == Kind::Quads
-            && self.settings.primitive() == Primitive::Flow
-            && self.n_faces <= MOST_OF_GRID
-            && mesh.n_faces() <= TRIANGLES_PER_QUAD * self.n_faces
-            && (whole.shape.n_borders, whole.shape.genus) == (1, Some(0));
-        if !is_wanted || !self.strokes.is_empty() || self.density.on(mesh).is_some() {
+        if !self.may_be_grid(whole) || !self.strokes.is_empty() || self.density.on(mesh).is_some() {
             return Ok(None);
         }
         // A sharp diagonal, as of a card that is twisted, is no line.

@@ -37,8 +37,10 @@ pub enum Flowed {
     },
     /// They are a grid, as the part was: with other counts.
     Grid,
-    /// They are the part's own quads, cut into finer ones.
+    /// They are the part's own quads: as they were, cut into finer ones, or without some strips.
     Own {
+        /// How many of the part's own quads went with strips that were taken out.
+        n_taken: usize,
         /// How many strips of quads there are, each cut into a number of rows.
         n_strips: usize,
     },

@@ -1,12 +1,12 @@
-//! Parts that are coarser than what is asked for, in quads that can stay: these are cut into finer ones.
+//! Parts in quads that can stay: these are cut into finer ones, or strips of them are taken out.
 //!
-//! A crate, a cornice, a coarse model of a body have a modeller's quads already. Cut into rows strip by
-//! strip they keep every edge, border and handle where it is, and all loops; a flow would look for them
-//! anew. Triangles are paired first, so that it does not matter how quads were cut for a file.
+//! A crate, a cornice, a model of a body have a modeller's quads already. Cut into rows strip by strip
+//! they keep every edge, border and handle where it is, and all loops; without some strips they keep the
+//! other loops. A flow would look for them anew. Triangles are paired first, so that it does not matter
+//! how quads were cut for a file.
 
+mod judge;
 mod places;
-
-use glam::DVec3;
 
 use super::Error;
 use super::clock::Clock;
@@ -17,43 +17,39 @@ use super::marks::Marks;
 use super::mirror::Role;
 use super::open::Whole;
 use super::part::{PartResult, Wanted, embed_mesh};
+use super::probe::farthest;
 use super::report::Mirrored;
 use super::rods::{crosses, images};
 use super::settings::{Kind, Primitive, Settings};
 use super::uncut::edges;
-use crate::deform::Deformed;
-use crate::elementary::ln;
+use crate::chords;
+use crate::deform::{Deformed, Target};
 use crate::measure::PolygonEdges;
 use crate::mesh::{HalfedgeId, Id, PolygonMesh, TriangleMesh, VertexId};
-use crate::pair::{self, Cut, Layout, squareness};
+use crate::pair::{self, Cut, Layout};
 use crate::progress::Progress;
-use places::{places, sphere};
+pub use judge::n_quads;
+use places::sphere;
 
 /// The share that the count may be off, and of few quads one in so many, but no more than a few: a cube
 /// has 6 n².
 const MOST_OFF: f64 = 0.05;
 const QUADS_PER_OFF: usize = 8;
 const FEW_OFF: usize = 4;
-/// Vertices where other than four quads meet: so many, and one in so many of the quads asked for.
-const FEW_IRREGULAR: usize = 8;
-const QUADS_PER_IRREGULAR: usize = 20;
-/// No vertex has more quads.
-const MOST_VALENCE: usize = 6;
-/// The sine of the worst corner of every quad, and the mean over the area.
-const LEAST_SQUARE: f64 = 0.08;
-const MEAN_SQUARE: f64 = 0.75;
-/// How much longer or shorter edges are than wanted: the mean of the logarithm over the area, and where
-/// sharp edges lie close together, which a flow could not follow.
-const MOST_UNEVEN: f64 = 0.7;
-const MOST_UNEVEN_OF_SHARP: f64 = 1.2;
-/// And where edges of one length are asked for.
-const MOST_UNEVEN_OF_EVEN: f64 = 0.15;
+/// And one in so many of quads that came in, where no more than that are asked for: strips are large.
+const NEAR_PER_OFF: usize = 8;
+/// Of quads so many times as many as asked for strips are taken out.
+const MOST_FINER: usize = 3;
+/// How far the part may be from quads of which strips were taken out, in their edges.
+const FARTHEST: f64 = 0.75;
+/// One in so many sharp edges may lie inside of a quad where a part came in quads, nearly all of it.
+const KEPT_PER_LOST: usize = 16;
 
-/// The sides of polygons of four corners and more, of a mesh that has no more triangles than its quads
-/// may have; those of others are not asked for.
+/// The sides of polygons of four corners and more; none of a mesh that is finer than quads may be of
+/// which strips are taken out.
 pub fn sides(prepared: &Prepared, input: &PolygonMesh, settings: &Settings) -> Marks {
     let mesh = &prepared.mesh;
-    if !is_coarse(mesh, settings.faces) {
+    if !are_wanted(settings) || mesh.n_faces() > 2 * MOST_FINER * settings.faces {
         return Marks::default();
     }
     let corners = |h: HalfedgeId| input.face(prepared.input_face(h.face())).len();
@@ -65,6 +61,12 @@ pub fn sides(prepared: &Prepared, input: &PolygonMesh, settings: &Settings) -> M
     };
     let sides = mesh.halfedge_ids().filter(is_side);
     Marks::at(sides.map(|h| [mesh.origin(h), mesh.target(h)].map(|v| mesh.position(v))))
+}
+
+/// Whether parts may keep their own quads.
+pub fn are_wanted(settings: &Settings) -> bool {
+    let is_flow = settings.kind == Kind::Quads && settings.primitive() == Primitive::Flow;
+    settings.own_quads && is_flow
 }
 
 /// Whether triangles in pairs are no more than asked for, within the share that counts may be off.
@@ -79,7 +81,7 @@ fn most_faces(n_asked: usize) -> usize {
 }
 
 impl Wanted<'_> {
-    /// The part's own quads cut into as many as are asked for; none where they are too many, or no
+    /// The part's own quads, cut into as many as are asked for or without some strips; none where no
     /// good ones come of it.
     ///
     /// # Errors
@@ -91,17 +93,15 @@ impl Wanted<'_> {
         progress: &Progress<'_>,
     ) -> Result<Option<PartResult>, Error> {
         let mesh = &whole.mesh;
-        let is_wanted = self.settings.own_quads
-            && self.settings.kind == Kind::Quads
-            && self.settings.primitive() == Primitive::Flow
-            && is_coarse(mesh, self.n_faces)
+        let is_wanted = are_wanted(self.settings)
+            && self.may_be_own(mesh)
             && self.strokes.is_empty()
             && self.density.on(mesh).is_none();
         if !is_wanted {
             return Ok(None);
         }
         let part = progress.part("pair", 0.0, 0.3);
-        let Some(own) = clock.step("pair", || self.paired(whole, &part))? else {
+        let Some(own) = clock.step("pair", || self.own(whole, &part))? else {
             return Ok(None);
         };
         let Some(fine) = clock.step("pair", || self.fine(&own)) else {
@@ -114,7 +114,7 @@ impl Wanted<'_> {
             let embedded = clock.step("embed", || embed_mesh(mesh.clone(), self.predictor, &part));
             Some(embedded?)
         };
-        let places = places(mesh, (&own.quads, &fine.cut));
+        let places = own.places(mesh, &fine.cut);
         let sphere = sphere(closed.as_ref(), &fine.cut.mesh, &places, &part);
         let Some(sphere) = sphere? else {
             return Ok(None);
@@ -122,9 +122,15 @@ impl Wanted<'_> {
         let along = fine.cut.along(&own.kept);
         let quads = fine.cut.mesh;
         let quads = quads.with_positions(places.iter().map(|place| place.position).collect());
+        if own.fewer.is_some() && !stands(&quads, mesh, progress)? {
+            return Ok(None);
+        }
         let deformed = Deformed::in_space(quads, sphere, along, progress)?;
-        let n_strips = fine.n_strips;
-        let mut made = self.without_map((whole, came), deformed, Some(Flowed::Own { n_strips }));
+        let flowed = Flowed::Own {
+            n_strips: fine.n_strips,
+            n_taken: own.n_taken(),
+        };
+        let mut made = self.without_map((whole, came), deformed, Some(flowed));
         let n_crosses = self.settings.n_crosses * self.n_faces;
         made.crosses = crosses(&made.mesh, n_crosses.div_ceil(self.settings.faces));
         if let Some(embedded) = closed {
@@ -137,21 +143,52 @@ impl Wanted<'_> {
         Ok(Some(made))
     }
 
+    /// Whether there are few enough triangles: twice as many as quads are asked for, more of those that
+    /// came in quads, of which strips can be taken out.
+    fn may_be_own(&self, mesh: &TriangleMesh) -> bool {
+        let most = 2 * MOST_FINER * self.n_faces;
+        is_coarse(mesh, self.n_faces)
+            || mesh.n_faces() <= most && judge::n_quads(mesh, self.sides).is_some()
+    }
+
+    /// The part's own quads, or fewer, if they are good.
+    fn own(&self, whole: &Whole, progress: &Progress<'_>) -> Result<Option<Own>, Error> {
+        let Some(own) = self.paired(whole, &progress.part("", 0.0, 0.5))? else {
+            return Ok(None);
+        };
+        let most = most_faces(self.n_faces);
+        if !own.is_regular(self.n_faces) {
+            return Ok(None);
+        }
+        if own.quads.n_faces() <= most {
+            return Ok(Some(own));
+        }
+        let is_grid = || pair::Grid::of(&own.quads, &own.kept).is_some();
+        if self.may_be_grid(whole) && is_grid() {
+            return Ok(None);
+        }
+        own.fewer(most, &progress.part("", 0.5, 1.0))
+    }
+
     /// The part's triangles as quads, if all of them are, none of them across a line that stays, and
     /// they are their own image where they shall be.
     fn paired(&self, whole: &Whole, progress: &Progress<'_>) -> Result<Option<Own>, Error> {
         let mesh = &whole.mesh;
+        let is_side = self.sides.on(mesh);
         let mut stay = self.kept(whole, mesh);
+        judge::without_diagonals(mesh, &is_side, &mut stay);
         let kept = edges(mesh, &stay);
-        let sides = self.sides.on(mesh);
-        for (stays, is_side) in stay.as_mut_slice().iter_mut().zip(&sides) {
+        for (stays, is_side) in stay.as_mut_slice().iter_mut().zip(&is_side) {
             *stays |= is_side;
         }
         let pairs = pair::pair_open(mesh, &stay, progress)?;
         let has = |edge: &[VertexId; 2]| pairs.kept.binary_search(edge).is_ok();
+        let came_in_quads = judge::n_quads(mesh, self.sides).is_some();
+        let (kept, lost): (Vec<_>, Vec<_>) = kept.into_iter().partition(has);
+        let most_lost = usize::from(came_in_quads) * kept.len() / KEPT_PER_LOST;
         let is_all = pairs.quads.positions() == mesh.positions()
             && pairs.quads.n_quads() == pairs.quads.n_faces()
-            && kept.iter().all(has);
+            && lost.len() <= most_lost;
         if !is_all {
             return Ok(None);
         }
@@ -162,35 +199,15 @@ impl Wanted<'_> {
         if matches!(self.mirror.0, Role::Whole) && images.is_none() {
             return Ok(None);
         }
-        let own = Own {
+        Ok(Some(Own {
             is_border: PolygonEdges::new(&pairs.quads, progress)?
                 .border_vertices(mesh.n_vertices()),
+            came_in_quads,
             quads: pairs.quads,
             kept,
             images,
-        };
-        Ok(self.is_regular(&own).then_some(own))
-    }
-
-    /// Whether few vertices have other than four quads, and none many.
-    fn is_regular(&self, own: &Own) -> bool {
-        let mut valences = vec![0; own.quads.n_vertices()];
-        for v in own.quads.corners() {
-            valences[v.index()] += 1;
-        }
-        let each = || valences.iter().zip(&own.is_border);
-        let most = |&is_border: &bool| {
-            if is_border {
-                MOST_VALENCE / 2
-            } else {
-                MOST_VALENCE
-            }
-        };
-        // On a border a corner has one quad, a turn inwards three.
-        let is_usual = |(&n, &is_border): (&usize, &bool)| if is_border { n <= 3 } else { n == 4 };
-        let n_irregular = each().filter(|&pair| !is_usual(pair)).count();
-        each().all(|(&n, is_border)| n <= most(is_border))
-            && n_irregular <= FEW_IRREGULAR + self.n_faces / QUADS_PER_IRREGULAR
+            fewer: None,
+        }))
     }
 
     /// The quads cut into finer ones, if these have the count and a good shape.
@@ -198,58 +215,95 @@ impl Wanted<'_> {
         let layout = Layout::of(&own.quads, own.images.as_deref())?;
         let counts = layout.counts(self.n_faces);
         let n_quads = layout.n_quads(&counts);
-        if n_quads > most_faces(self.n_faces) || self.n_faces > most_faces(n_quads) {
+        let most = |n| {
+            let near = own.is_near(self.n_faces).then_some(n + n / NEAR_PER_OFF);
+            most_faces(n).max(near.unwrap_or(0))
+        };
+        if n_quads > most(self.n_faces) || self.n_faces > most(n_quads) {
             return None;
         }
         let cut = layout.cut(&counts);
-        let most_uneven = if self.settings.style.evenness() > 0.0 {
-            MOST_UNEVEN_OF_EVEN
-        } else if own.kept.is_empty() {
-            MOST_UNEVEN
-        } else {
-            MOST_UNEVEN_OF_SHARP
-        };
-        is_good(&cut.mesh, most_uneven).then(|| Fine {
+        let asked = (self.settings, self.n_faces);
+        own.is_good(&cut.mesh, asked).then(|| Fine {
             n_strips: layout.n_strips(),
             cut,
         })
     }
 }
 
-/// A part's triangles as quads.
+/// A part's triangles as quads, or fewer of them.
 struct Own {
     quads: PolygonMesh,
     /// Their edges along sharp and marked ones.
     kept: Vec<[VertexId; 2]>,
     is_border: Vec<bool>,
+    /// Whether the part came in quads, nearly all of it.
+    came_in_quads: bool,
     /// The image of each vertex, where they are to be their own image.
     images: Option<Vec<VertexId>>,
+    /// What the part's own quads were, where strips of them were taken out.
+    fewer: Option<Before>,
+}
+
+/// The part's own quads, of which strips were taken out.
+struct Before {
+    n_quads: usize,
+    /// Their edges along sharp and marked ones.
+    kept: Vec<[VertexId; 2]>,
+    /// The vertices that became each of those that are left.
+    members: Vec<Vec<VertexId>>,
+}
+
+impl Own {
+    /// Quads without some strips, no more than `most`; none where they have no good ones left.
+    fn fewer(self, most: usize, progress: &Progress<'_>) -> Result<Option<Self>, Error> {
+        let rules = chords::Rules {
+            lines: &self.kept,
+            images: self.images.as_deref(),
+        };
+        let Some(fewer) = chords::fewer(&self.quads, rules, most, progress)? else {
+            return Ok(None);
+        };
+        let n = fewer.quads.n_vertices();
+        let mut members = vec![Vec::new(); n];
+        for (v, new) in fewer.vertex_of.iter().enumerate() {
+            members[new.index()].push(VertexId::from_index(v));
+        }
+        Ok(Some(Self {
+            is_border: PolygonEdges::new(&fewer.quads, progress)?.border_vertices(n),
+            quads: fewer.quads,
+            kept: fewer.lines,
+            came_in_quads: self.came_in_quads,
+            images: fewer.images,
+            fewer: Some(Before {
+                n_quads: self.quads.n_faces(),
+                kept: self.kept,
+                members,
+            }),
+        }))
+    }
+
+    /// How many of the part's own quads were taken out.
+    fn n_taken(&self) -> usize {
+        let before = self.fewer.as_ref().map(|before| before.n_quads);
+        before.map_or(0, |n| n - self.quads.n_faces())
+    }
+}
+
+/// Whether no point of the part is far from quads.
+fn stands(
+    quads: &PolygonMesh,
+    mesh: &TriangleMesh,
+    progress: &Progress<'_>,
+) -> Result<bool, Error> {
+    let target = Target::new(mesh.clone(), progress)?;
+    Ok(farthest(quads, &target) <= FARTHEST)
 }
 
 /// The same cut into finer ones.
 struct Fine {
     cut: Cut,
     n_strips: usize,
-}
-
-/// Whether quads have square corners and edges of about one length.
-fn is_good(quads: &PolygonMesh, most_uneven: f64) -> bool {
-    let corners = |face: &[VertexId]| [0, 1, 2, 3].map(|i| quads.position(face[i]));
-    let area = |p: &[DVec3; 4]| (p[2] - p[0]).cross(p[3] - p[1]).length() / 2.0;
-    let each = || quads.faces().map(corners);
-    let whole: f64 = each().map(|p| area(&p)).sum();
-    let edge = (whole / quads.n_faces() as f64).sqrt();
-    let [mut square, mut uneven] = [0.0, 0.0];
-    for p in each() {
-        let worst = squareness(p);
-        if worst < LEAST_SQUARE {
-            return false;
-        }
-        let longer = |i: usize| ln(p[i].distance(p[(i + 1) % 4]) / edge).abs();
-        square += area(&p) * worst;
-        uneven += area(&p) * (0..4).map(longer).sum::<f64>() / 4.0;
-    }
-    square >= MEAN_SQUARE * whole && uneven <= most_uneven * whole
 }
 
 #[cfg(test)]

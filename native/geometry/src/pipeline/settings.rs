@@ -147,8 +147,8 @@ pub struct Settings {
     pub primitive: Option<Primitive>,
     /// How quads flow; nothing else asks for it.
     pub style: Style,
-    /// Whether quads of a part that are coarser than what is asked for are cut into finer ones, where
-    /// good ones come of it; else new ones are made.
+    /// Whether a part keeps its own quads, cut into finer ones or without some strips, where good ones
+    /// come of it; else new ones are made.
     pub own_quads: bool,
     /// Edges at which the surface turns by more than so many degrees, from 0 to 180, get edges of
     /// the result along them; 180 keeps none but those that are marked.

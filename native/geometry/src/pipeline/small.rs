@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::frame::Frame;
 use super::kept::{Flaw, Outcome, Reason};
 use super::split::Part;
-use super::{Error, Settings};
+use super::{Error, Settings, own};
 use crate::mesh::{FaceId, PolygonMesh, VertexId, bounds};
 
 /// A part that is at least this share of the largest is never small: where a mesh has many equal
@@ -45,7 +45,7 @@ impl SmallParts {
 ///
 /// A part is small when it measures less than was asked for; or when it could be done, but its fair
 /// share of the faces is less than the fewest that close it, and the largest part is more than four
-/// times as large. `amounts` has what the share of each surface goes by.
+/// times as large. A part in quads has no smaller share of them than of all. `amounts` has what the share of each surface goes by.
 pub fn mark(parts: &mut [Part], mesh: &PolygonMesh, amounts: &[f64], settings: &Settings) {
     if parts.len() < 2 {
         return;
@@ -78,7 +78,7 @@ pub fn mark(parts: &mut [Part], mesh: &PolygonMesh, amounts: &[f64], settings: &
         let Some(amount) = amount(part).filter(|a| *a < COMPARABLE * largest) else {
             continue;
         };
-        let share = settings.faces as f64 * amount / total;
+        let share = (settings.faces as f64 * amount / total).max(own_share(part, mesh, settings));
         if share < least as f64 {
             let faces = settings.faces;
             let text = format!(
@@ -88,6 +88,16 @@ pub fn mark(parts: &mut [Part], mesh: &PolygonMesh, amounts: &[f64], settings: &
             part.is_small(mesh, (Some(share), size_pct), text);
         }
     }
+}
+
+/// The share of a part in quads that can stay: as much of them as of all faces.
+fn own_share(part: &Part, mesh: &PolygonMesh, settings: &Settings) -> f64 {
+    let are_quads = || part.faces.iter().all(|&face| mesh.face(face).len() == 4);
+    if !own::are_wanted(settings) || !are_quads() {
+        return 0.0;
+    }
+    let share = settings.faces as f64 / mesh.n_faces() as f64;
+    share.min(1.0) * part.faces.len() as f64
 }
 
 impl Part {

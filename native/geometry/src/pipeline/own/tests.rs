@@ -1,3 +1,5 @@
+use glam::DVec3;
+
 use super::*;
 use crate::embed::Solver;
 use crate::measure;
@@ -60,7 +62,14 @@ fn a_moulding_stays_the_sheet_that_it_is_at_any_count() {
     for faces in [60, 200, 1_000] {
         let made = made(&mesh, &asked(faces));
         let part = &made.report.parts[0];
-        assert_eq!(part.flow, Some(Flowed::Own { n_strips: 6 }), "{faces}");
+        assert_eq!(
+            part.flow,
+            Some(Flowed::Own {
+                n_strips: 6,
+                n_taken: 0
+            }),
+            "{faces}"
+        );
         assert!(made.mesh.n_faces().abs_diff(faces) * 20 <= faces);
         assert!(off(&made, &mesh) < 1e-12);
         let topology = measure::topology(&made.mesh, &Progress::none()).unwrap();
@@ -107,9 +116,72 @@ fn new_quads_are_made_where_that_is_asked_for_or_own_ones_would_be_too_many() {
         ..asked(96)
     };
     assert!(matches!(flow(&cube(DVec3::ONE), &new), Flowed::Used { .. }));
-    let fine = made(&cube(DVec3::ONE), &asked(384)).mesh;
+    let fine = made(&cube(DVec3::ONE), &asked(6 * 400)).mesh;
     let fewer = flow(&fine, &asked(96));
     assert!(matches!(fewer, Flowed::Used { .. }), "{fewer:?}");
+}
+
+/// A tube of `n` sides along z, open at both ends.
+fn tube(n: u32, n_rings: u32) -> PolygonMesh {
+    let point = |i: u32| {
+        let (sin, cos) =
+            crate::elementary::sin_cos(std::f64::consts::TAU * f64::from(i % n) / f64::from(n));
+        DVec3::new(cos, sin, f64::from(i / n))
+    };
+    let quad = |i: u32| {
+        let [ring, side] = [i / n * n, i % n];
+        let next = (side + 1) % n;
+        [ring + side, ring + next, ring + n + next, ring + n + side]
+    };
+    let points = (0..n * (n_rings + 1)).map(point).collect();
+    let quads: Vec<[u32; 4]> = (0..n * n_rings).map(quad).collect();
+    PolygonMesh::from_faces(points, &quads).unwrap()
+}
+
+#[test]
+fn strips_are_taken_out_of_quads_that_are_finer_than_asked_for() {
+    let closed = made(&cube(DVec3::ONE), &asked(384)).mesh;
+    for (mesh, faces, n_borders) in [(closed, 96, 0), (tube(24, 9), 96, 2)] {
+        let n_came = mesh.n_faces();
+        let fewer = made(&mesh, &asked(faces));
+        let n = fewer.mesh.n_faces();
+        assert!(n.abs_diff(faces) * 8 <= faces, "{n}");
+        let flow = fewer.report.parts[0].flow.as_ref();
+        assert!(
+            matches!(flow, Some(Flowed::Own { n_taken, .. }) if *n_taken >= n_came - n - n / 8),
+            "{flow:?}"
+        );
+        // A vertex in the plane of symmetry lies between its places on both sides.
+        assert!(off(&fewer, &mesh) < 1e-3);
+        assert_eq!(fewer.report.parts[0].deform.n_inverted, 0);
+        let topology = measure::topology(&fewer.mesh, &Progress::none()).unwrap();
+        assert_eq!((topology.n_borders, topology.genus), (n_borders, Some(0)));
+    }
+}
+
+#[test]
+fn as_many_quads_as_came_in_stay_what_they_were_in_every_part() {
+    // A rod of many quads beside a slab of few: by area the rod would get next to none.
+    let rod = tube(12, 20);
+    let slab = cube(DVec3::new(60.0, 60.0, 1.0));
+    let n = rod.n_vertices() as u32;
+    let away = slab.positions().iter().map(|&p| p + DVec3::X * 50.0);
+    let points: Vec<DVec3> = rod.positions().iter().copied().chain(away).collect();
+    let named = |mesh: &PolygonMesh, by: u32| -> Vec<Vec<u32>> {
+        let faces = mesh.faces();
+        faces
+            .map(|f| f.iter().map(|v| v.0 + by).collect())
+            .collect()
+    };
+    let both = [named(&rod, 0), named(&slab, n)].concat();
+    let mesh = PolygonMesh::from_faces(points, &both).unwrap();
+    let made = made(&mesh, &asked(both.len()));
+    assert_eq!(made.mesh.n_faces(), both.len());
+    assert_eq!(made.report.parts[0].n_faces, 240);
+    for p in mesh.positions() {
+        let near = |q: &DVec3| p.distance(*q) < 1e-9;
+        assert!(made.mesh.positions().iter().any(near), "{p}");
+    }
 }
 
 #[test]
