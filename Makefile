@@ -148,6 +148,6 @@ dist/wheel.stamp: $(SOURCES) | $(VENV)/venv.stamp
 		--manifest-path native/python/Cargo.toml --out dist/wheels $(WHEEL_FLAGS)
 	@touch $@
 
-dist/zip.stamp: dist/wheel.stamp $(ADDON) LICENSE-GPL scripts/build_zip.py | $(VENV)/venv.stamp
+dist/zip.stamp: dist/wheel.stamp $(ADDON) LICENSE-GPL docs/blender.md scripts/build_zip.py scripts/manual.py | $(VENV)/venv.stamp
 	$(BIN)/python scripts/build_zip.py dist/wheels dist
 	@touch $@
