@@ -43,7 +43,7 @@ _ROWS = (
     (n_("Faces"), "n_faces", "{:,}"),
     (n_("Quads"), "quads_pct", "{:.0f} %"),
     (n_("Irregular vertices"), "irregular_pct", "{:.1f} %"),
-    (n_("Irregular on borders"), "border_irregular_pct", "{:.1f} %"),
+    (n_("Irregular, border"), "border_irregular_pct", "{:.1f} %"),
     (n_("Flow deviation"), "alignment_deg", "{:.1f}°"),
     (n_("On closed loops"), "loop_edges_pct", "{:.0f} %"),
     (n_("In spirals"), "spiral_pct", "{:.0f} %"),
@@ -163,13 +163,25 @@ def _draw_size(
             button.data_path, button.value = "scene.orbflow.ratio", ratio
     thing = context.object
     if thing and thing.type == "MESH" and wanted.size != "EDGE":
-        seen = thing.evaluated_get(context.evaluated_depsgraph_get())
-        n = len((seen if wanted.use_modifiers else thing).data.polygons)
+        n, is_editing = _n_faces_now(wanted, context)
         told = words.count(n, n_("{:,} face now"), n_("{:,} faces now"))
+        if is_editing:
+            told = words.count(n, n_("{:,} face selected"), n_("{:,} faces selected"))
         if wanted.size == "RATIO":
-            n_asked, n_faces = round(n * wanted.ratio / 100), (n_("{:,} face"), n_("{:,} faces"))
-            told = rpt_("{:,} of {}").format(n_asked, words.count(n, *n_faces))
+            n_asked = round(n * wanted.ratio / 100)
+            n_faces = words.count(n, n_("{:,} face"), n_("{:,} faces"))
+            told = rpt_("{:,} of {}").format(n_asked, n_faces)
         layout.label(text=told, icon="MESH_DATA")
+
+
+def _n_faces_now(wanted: settings.Settings, context: bpy.types.Context) -> tuple[int, bool]:
+    """How many faces the active mesh has; in edit mode, of what is selected, and that it is so."""
+    thing = context.object
+    # What is evaluated then has no faces of its own.
+    if thing.mode == "EDIT":
+        return thing.data.total_face_sel, True
+    seen = thing.evaluated_get(context.evaluated_depsgraph_get())
+    return len((seen if wanted.use_modifiers else thing).data.polygons), False
 
 
 def _draw_settings(

@@ -10,7 +10,7 @@ import orbflow_native
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from . import choices, named, preferences
-from .translations import n_
+from .translations import CONTEXT, n_
 
 # How many crosses of the field a result brings: enough to read the field, a tenth of a megabyte.
 N_CROSSES = 4000
@@ -114,6 +114,7 @@ class Settings:
     )
     use_modifiers: BoolProperty(
         name="Apply Modifiers",
+        translation_context=CONTEXT,
         description=(
             "Remesh what is seen: modifiers that make geometry, such as Mirror and Subdivision, go "
             "into the result and leave the stack; those that follow a pose or time stay"
@@ -161,6 +162,7 @@ class Settings:
     )
     handles: EnumProperty(
         name="Handles",
+        translation_context=CONTEXT,
         description="What becomes of handles, as of a cup, and of holes that go through",
         items=choices.HANDLES,
     )

@@ -130,3 +130,20 @@ def test_no_sentence_is_made_past_the_translations() -> None:
                     if is_a(each, "Constant", "JoinedStr")
                 ]
     assert past == []
+
+
+@pytest.mark.usefixtures("open_fixture")
+@pytest.mark.parametrize("language", ["de", "fr"])
+def test_names_of_settings_are_short_enough_for_the_sidebar(language: str) -> None:
+    words, settings = languages()[language], addon("settings")
+    names = {
+        each.name or "": each.type == "BOOLEAN"
+        for each in settings.OrbflowSettings.bl_rna.properties
+        if each.identifier in settings.OrbflowSettings.__annotations__
+        or each.identifier in settings.NAMES
+    }
+    assert len(names) > 25
+    # Beside its box a name has more room than before its field.
+    told = {words.get(name, name): is_box for name, is_box in names.items()}
+    assert [name for name, is_box in told.items() if len(name) > (19 if is_box else 16)] == []
+    assert [name for name, is_box in names.items() if len(name) > (19 if is_box else 18)] == []

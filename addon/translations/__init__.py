@@ -15,8 +15,10 @@ from . import french, german
 
 #: By the language's name in Blender; a dictionary from the English text each.
 LANGUAGES = {"de": german.WORDS, "fr": french.WORDS}
+#: For names that Blender has in another sense: its handles are those of curves.
+CONTEXT = "Orbflow"
 # Names of operators are looked up apart from all else.
-_CONTEXTS = ("*", "Operator")
+_CONTEXTS = ("*", "Operator", CONTEXT)
 _blender: Any = bpy.app.translations
 #: Look a text up for a report, for a label, for a tooltip.
 rpt_, iface_, tip_ = (

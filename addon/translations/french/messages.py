@@ -75,7 +75,7 @@ WORDS = {
         "il n'est pas en mode objet, où Orbflow travaille"
     ),
     "it is open where modifier {} closes it: switch on Apply Modifiers": (
-        "il est ouvert là où le modificateur {} le ferme : cocher Appliquer les modificateurs"
+        "il est ouvert là où le modificateur {} le ferme : cocher Avec modificateurs"
     ),
     "it was changed meanwhile and is left as it is now": (
         "il a été modifié entre-temps et reste tel qu'il est maintenant"
@@ -107,7 +107,7 @@ WORDS = {
         "distance, or switch off Apply Modifiers"
     ): (
         "les modificateurs {} le déchirent là où des sommets sont seulement superposés : les "
-        "fusionner par distance, ou décocher Appliquer les modificateurs"
+        "fusionner par distance, ou décocher Avec modificateurs"
     ),
     "no collection, object or annotation with lines is named '{}'; there are: {}": (
         "aucune collection, aucun objet ni annotation avec des lignes ne s'appelle '{}' ; il "
@@ -179,6 +179,8 @@ WORDS = {
     "{:,} done": "{:,} fait(s)",
     "{:,} face": "{:,} face",
     "{:,} face now": "{:,} face maintenant",
+    "{:,} face selected": "{:,} face sélectionnée",
+    "{:,} faces selected": "{:,} faces sélectionnées",
     "{:,} face of fewer than 3 corners": "{:,} face de moins de 3 coins",
     "{:,} face on what was closed for good": "{:,} face sur ce qui a été fermé pour de bon",
     "{:,} face that is there twice": "{:,} face en double",

@@ -73,7 +73,7 @@ WORDS = {
         "es ist nicht im Objektmodus, in dem Orbflow arbeitet"
     ),
     "it is open where modifier {} closes it: switch on Apply Modifiers": (
-        "es ist offen, wo Modifikator {} es schließt: Modifikatoren anwenden einschalten"
+        "es ist offen, wo Modifikator {} es schließt: Mit Modifikatoren einschalten"
     ),
     "it was changed meanwhile and is left as it is now": (
         "es wurde inzwischen geändert und bleibt, wie es jetzt ist"
@@ -104,7 +104,7 @@ WORDS = {
         "distance, or switch off Apply Modifiers"
     ): (
         "Modifikatoren {} reißen es auf, wo Punkte nur aufeinander liegen: nach Abstand "
-        "zusammenführen oder Modifikatoren anwenden ausschalten"
+        "zusammenführen oder Mit Modifikatoren ausschalten"
     ),
     "no collection, object or annotation with lines is named '{}'; there are: {}": (
         "keine Sammlung, kein Objekt und keine Annotation mit Linien heißt '{}'; es gibt: {}"
@@ -172,6 +172,8 @@ WORDS = {
     "{:,} done": "{:,} fertig",
     "{:,} face": "{:,} Fläche",
     "{:,} face now": "{:,} Fläche jetzt",
+    "{:,} face selected": "{:,} Fläche ausgewählt",
+    "{:,} faces selected": "{:,} Flächen ausgewählt",
     "{:,} face of fewer than 3 corners": "{:,} Fläche mit weniger als 3 Ecken",
     "{:,} face on what was closed for good": "{:,} Fläche auf endgültig Geschlossenem",
     "{:,} face that is there twice": "{:,} doppelt vorhandene Fläche",
