@@ -82,14 +82,27 @@ class VIEW3D_PT_orbflow(bpy.types.Panel):
         row.active = earlier.may_be(context.object)
         row.prop(context.window_manager, "orbflow_before", slider=True)
         column = layout.column(heading=n_("Show"))
-        column.prop(context.scene.orbflow, "show_size")
-        column.prop(context.scene.orbflow, "show_irregular")
+        _draw_show(column, wanted, context.object)
         last = runs.last_of(context.object)
         crosses = column.row()
         crosses.active = last is not None and len(last.crosses) > 0
         crosses.prop(context.scene.orbflow, "show_crosses")
         if last:
             _draw_score(layout.box().column(align=True), last.report, n_letters)
+
+
+def _draw_show(
+    column: bpy.types.UILayout, wanted: settings.OrbflowSettings, thing: bpy.types.Object | None
+) -> None:
+    """What is drawn over the active mesh, and what its colors stand for."""
+    if thing and thing.type == "MESH":
+        column.prop(thing, "show_wire", text="Wireframe")
+    column.prop(wanted, "show_size")
+    if wanted.show_size:
+        column.label(text=n_("Blue: large, red: small"))
+    column.prop(wanted, "show_irregular")
+    if wanted.show_irregular:
+        column.label(text=n_("Blue: 3 edges, red: 5"))
 
 
 def _draw_section(layout: bpy.types.UILayout, wanted: settings.Settings, title: str) -> None:

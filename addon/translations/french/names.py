@@ -13,6 +13,8 @@ WORDS = {
     "Bake Normal Map": "Précalculer la carte de normales",
     "Before / After": "Avant / Après",
     "Blender makes no Multires here": "Blender ne crée pas de multirésolution ici",
+    "Blue: 3 edges, red: 5": "Bleu : 3 arêtes, rouge : 5",
+    "Blue: large, red: small": "Bleu : grand, rouge : petit",
     "Borders": "Bords",
     "Borders between materials": "Limites entre les matériaux",
     "Cancel": "Annuler",

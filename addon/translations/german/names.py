@@ -13,6 +13,8 @@ WORDS = {
     "Bake Normal Map": "Normalmap backen",
     "Before / After": "Vor / Nach",
     "Blender makes no Multires here": "Blender legt hier kein Multires an",
+    "Blue: 3 edges, red: 5": "Blau: 3 Kanten, rot: 5",
+    "Blue: large, red: small": "Blau: groß, rot: klein",
     "Borders": "Ränder",
     "Borders between materials": "Grenzen zwischen Materialien",
     "Cancel": "Abbrechen",
