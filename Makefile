@@ -13,10 +13,11 @@ FEATURES ?= orbflow-cli/train
 # The engines besides flex that are tested: not cuda, whose build fetches a compiler.
 ENGINES = orbflow-cli/ndarray,orbflow-cli/wgpu
 SOURCES := $(shell find Cargo.toml Cargo.lock native/*/Cargo.toml native/*/src native/network/weights.orbflow native/python -type f 2>/dev/null)
+GLTF_VALIDATOR := gltf-validator@2.0.0-dev.3.10
 ADDON := $(shell find addon -type f ! -name "*.pyc")
 
 .SECONDARY: # keep the stamps
-.PHONY: help demo test test-rust test-drawn test-engines test-python test-window window-pictures wheel zip fixtures pictures tutorial bench weights evaluation sets lint package format ci ci-more clean
+.PHONY: help demo test test-rust test-drawn test-engines test-python test-window test-gltf window-pictures wheel zip fixtures pictures tutorial bench weights evaluation sets lint package format ci ci-more clean
 
 help: ## Prints this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -42,6 +43,12 @@ test-python: dist/zip.stamp $(VENV)/wheel.stamp ## Runs the tests over Blender, 
 
 test-window: dist/zip.stamp ## Tries the extension in Blender's window, as before a release; pictures are in dist/window
 	tests/window/run.sh dist/window $(CHECKS)
+
+test-gltf: $(VENV)/venv.stamp ## Holds files that the program writes against Khronos's glTF validator (node and npm are needed)
+	cargo build --release --locked -p orbflow-cli
+	mkdir -p dist/gltf && cp tests/gltf/validate.mjs tests/gltf/check.py dist/gltf
+	npm install --no-save --no-audit --no-fund --prefix dist/gltf $(GLTF_VALIDATOR)
+	$(BIN)/python dist/gltf/check.py target/release/orbflow dist/gltf
 
 window-pictures: dist/zip.stamp ## Makes the pictures of Blender's window in docs/pictures/ anew
 	tests/window/run.sh dist/window install pictures
@@ -112,11 +119,12 @@ ci: ## Runs what must pass before anything lands: tests and lints
 
 ci-more: export CARGO_INCREMENTAL = 0
 ci-more: export PIP_NO_CACHE_DIR = 1
-ci-more: ## Runs what the workflow runs besides, as before a release: every engine, the oldest Blender, the crates
+ci-more: ## Runs what the workflow runs besides, as before a release: every engine, the oldest Blender, glTF files, the crates
 	$(MAKE) test-drawn
 	$(MAKE) test-engines
 	$(MAKE) lint PYTHON_VERSION=3.13 FEATURES=$(ENGINES)
 	$(MAKE) test-python PYTHON_VERSION=3.11
+	$(MAKE) test-gltf PYTHON_VERSION=3.13
 	$(MAKE) package
 
 clean: ## Removes what was built, but not the virtual environments
@@ -148,6 +156,6 @@ dist/wheel.stamp: $(SOURCES) | $(VENV)/venv.stamp
 		--manifest-path native/python/Cargo.toml --out dist/wheels $(WHEEL_FLAGS)
 	@touch $@
 
-dist/zip.stamp: dist/wheel.stamp $(ADDON) LICENSE-GPL scripts/build_zip.py | $(VENV)/venv.stamp
+dist/zip.stamp: dist/wheel.stamp $(ADDON) LICENSE-GPL docs/blender.md scripts/build_zip.py scripts/manual.py | $(VENV)/venv.stamp
 	$(BIN)/python scripts/build_zip.py dist/wheels dist
 	@touch $@

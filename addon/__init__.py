@@ -8,7 +8,18 @@ is said of a run.
 
 import bpy
 
-from . import earlier, originals, overlay, panel, preferences, runs, settings, tool
+from . import (
+    earlier,
+    manual,
+    originals,
+    overlay,
+    panel,
+    preferences,
+    runs,
+    settings,
+    tool,
+    translations,
+)
 from .operators import (
     before,
     cancel,
@@ -42,6 +53,7 @@ _CLASSES = (
 
 def register() -> None:
     """Called by Blender when the extension is switched on."""
+    translations.register()
     for each in _CLASSES:
         bpy.utils.register_class(each)
     bpy.types.Scene.orbflow = bpy.props.PointerProperty(type=settings.OrbflowSettings)
@@ -51,10 +63,12 @@ def register() -> None:
     overlay.register()
     earlier.register()
     tool.register()
+    manual.register()
 
 
 def unregister() -> None:
     """Called by Blender when the extension is switched off."""
+    manual.unregister()
     tool.unregister()
     earlier.unregister()
     overlay.unregister()
@@ -64,3 +78,4 @@ def unregister() -> None:
     del bpy.types.Scene.orbflow
     for each in reversed(_CLASSES):
         bpy.utils.unregister_class(each)
+    translations.unregister()

@@ -14,6 +14,7 @@ import numpy as np
 from mathutils import Matrix
 
 from . import attributes, details, originals
+from .translations import rpt_
 
 #: What the nodes are called that a baked map is read by.
 NODE = "Orbflow Normal Map"
@@ -37,11 +38,12 @@ def bake(context: bpy.types.Context, thing: bpy.types.Object, size: int) -> bpy.
     """
     layer = thing.data.uv_layers.active
     if layer is None:
-        raise Refused(f"{thing.name} has no UV map to bake to")
+        raise Refused(rpt_("{} has no UV map to bake to").format(thing.name))
     if not _has_area(thing.data, layer.name):
-        raise Refused(f"UV map {layer.name} of {thing.name} has no area: unwrap it first")
+        told = rpt_("UV map {} of {} has no area: unwrap it first")
+        raise Refused(told.format(layer.name, thing.name))
     if "cycles" not in context.preferences.addons:
-        raise Refused("Cycles, which bakes, is switched off in the preferences")
+        raise Refused(rpt_("Cycles, which bakes, is switched off in the preferences"))
     with originals.as_remeshed(context, thing) as original:
         apart = details.distance(thing, original, thing.data)
         image = _new_image(thing, size)

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from . import attributes
 from .artist.groups import Group
+from .translations import rpt_
 
 #: The vertex group that is painted where none is named.
 DEFAULT = "Density"
@@ -38,8 +39,9 @@ def read(thing: bpy.types.Object, name: str, groups: list[Group]) -> NDArray[np.
             return group.weights
     if (attribute := thing.data.color_attributes.get(name)) is not None:
         return _brightness(thing.data, attribute)
-    offered = ", ".join(each for each, _ in names(thing)) or "none"
-    raise NoSuchName(f"no vertex group or color attribute is named '{name}'; there are: {offered}")
+    offered = ", ".join(each for each, _ in names(thing)) or rpt_("none")
+    told = rpt_("no vertex group or color attribute is named '{}'; there are: {}")
+    raise NoSuchName(told.format(name, offered))
 
 
 def _brightness(mesh: bpy.types.Mesh, attribute: bpy.types.Attribute) -> NDArray[np.float32]:

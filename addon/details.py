@@ -17,6 +17,7 @@ import orbflow_native
 
 from . import mesh_arrays, originals
 from .stand_in import stand_ins
+from .translations import rpt_
 
 #: The names of the modifiers that hold the detail.
 MULTIRES, SUBDIVISION, SHRINKWRAP = "Orbflow Detail", "Orbflow Levels", "Orbflow Shrinkwrap"
@@ -87,8 +88,8 @@ def bake(
     with originals.as_remeshed(context, thing) as original:
         before = distance(thing, original, thing.data)
         if before.mean_pct > _APART_PCT:
-            told = f"{before.mean_pct:.0f} % of its size from its original"
-            raise Refused(f"{thing.name} is {told}: are they still one shape?")
+            told = rpt_("{} is {:.0f} % of its size from its original: are they still one shape?")
+            raise Refused(told.format(thing.name, before.mean_pct))
         with _placed(context, original) as target:
             wanted = levels or _most_levels(thing.data, original)
             if live:
@@ -102,10 +103,11 @@ def bake(
 
 def _check(thing: bpy.types.Object) -> None:
     if not thing.data.polygons:
-        raise Refused(f"{thing.name} has no faces")
+        raise Refused(rpt_("{} has no faces").format(thing.name))
     others = [each.name for each in thing.modifiers if each.type == "MULTIRES"]
     if [each for each in others if each != MULTIRES]:
-        raise Refused(f"apply or remove modifier {others[0]} of {thing.name} first")
+        told = rpt_("apply or remove modifier {} of {} first")
+        raise Refused(told.format(others[0], thing.name))
 
 
 def _scaled(mesh: bpy.types.Mesh, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -10,6 +10,7 @@ import orbflow_native
 from numpy.typing import NDArray
 
 from . import attributes
+from .translations import rpt_
 
 Int = NDArray[np.int32]
 Float = NDArray[np.float32]
@@ -61,9 +62,10 @@ def of(thing: bpy.types.Object, names: tuple[str, ...]) -> Half | None:
         return None
     axes = [(each, axis) for each in mirrors for axis in range(3) if each.use_axis[axis]]
     if len(axes) != 1 or axes[0][0].mirror_object:
-        told = " and ".join(each.name for each in mirrors)
-        why = "mirrors otherwise than across one axis of the object"
-        raise NoHalf(f"no half can be kept: modifier {told} {why}")
+        told = rpt_(
+            "no half can be kept: modifier {} mirrors otherwise than across one axis of the object"
+        )
+        raise NoHalf(told.format(" + ".join(each.name for each in mirrors)))
     ((modifier, axis),) = axes
     if modifier.use_bisect_axis[axis]:
         return Half(modifier.name, axis, -1 if modifier.use_bisect_flip_axis[axis] else 1)
@@ -80,7 +82,8 @@ def cut(result: orbflow_native.Remeshed, half: Half) -> orbflow_native.Remeshed:
     sides = half.side * result.positions[:, half.axis][corners]
     low, high = (each.reduceat(sides, starts) for each in (np.minimum, np.maximum))
     if (n_across := int(((low < 0) & (high > 0)).sum())) > 0:
-        raise NoHalf(f"no half can be kept: {n_across:,} faces cross the plane, {_why(result)}")
+        told = rpt_("no half can be kept: {:,} faces cross the plane, {}")
+        raise NoHalf(told.format(n_across, _why(result)))
     is_kept = high > 0
     lengths = np.diff(np.append(starts, len(corners)))
     (loops,) = np.repeat(is_kept, lengths).nonzero()
@@ -132,4 +135,6 @@ def _are_edges(ends: Int, corners: Int, starts: NDArray[np.integer]) -> NDArray[
 def _why(result: orbflow_native.Remeshed) -> str:
     """Why a result is not symmetric, where it says so."""
     told = [part["mirrored"] or {} for part in result.report["parts"]]
-    return next((each["reason"] for each in told if "reason" in each), "which is not its middle")
+    return next(
+        (each["reason"] for each in told if "reason" in each), rpt_("which is not its middle")
+    )

@@ -16,6 +16,7 @@ from .guides.strokes import Stroke
 from .mesh_arrays import Float, MeshArrays
 from .modifiers import Applied
 from .regions import Flags
+from .translations import rpt_
 
 # Before this much has passed, and this share is done, nobody can say how long the rest takes.
 _LEAST_S = 1.0
@@ -217,7 +218,7 @@ class Job:
     def told(self) -> str:
         """How far it is, in words."""
         n = len(self.tasks)
-        which = f"{self.stage.at + 1:,} of {n:,}: " if n > 1 else ""
+        which = rpt_("{:,} of {}").format(self.stage.at + 1, f"{n:,}") + ": " if n > 1 else ""
         return which + words.status(self.stage.step, self.stage.share, self.left_s())
 
     def wait(self) -> None:

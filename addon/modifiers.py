@@ -20,6 +20,7 @@ from .artist.keys import Key
 from .half import Half
 from .mesh_arrays import MeshArrays
 from .stand_in import StandIns
+from .translations import n_, rpt_
 
 # Modifiers that make or remove vertices, edges or faces.
 _GENERATIVE = {
@@ -142,6 +143,9 @@ class Seen:
     applied: Applied | None = None
 
 
+_SCULPT = n_("apply or remove modifier {} first: it holds a sculpt")
+
+
 class Refused(Exception):
     """Modifiers of an object hinder a run."""
 
@@ -151,12 +155,13 @@ def stack(copies: StandIns, thing: bpy.types.Object, wanted: Wanted) -> Stack:
     names = _applied(copies, thing) if wanted.use_modifiers else ()
     for each in thing.modifiers:
         if each.type == "MULTIRES" and each.total_levels and each.name not in names:
-            raise Refused(f"apply or remove modifier {each.name} first: it holds a sculpt")
+            raise Refused(rpt_(_SCULPT).format(each.name))
         if each.name in names and thing.override_library and each.is_override_data:
-            raise Refused(f"modifier {each.name} is linked from another file and cannot be applied")
+            told = rpt_("modifier {} is linked from another file and cannot be applied")
+            raise Refused(told.format(each.name))
         if each.type == "MIRROR" and each.show_viewport and not names and _is_open(thing.data):
-            told = f"it is open where modifier {each.name} closes it"
-            raise Refused(f"{told}: switch on Apply Modifiers")
+            told = rpt_("it is open where modifier {} closes it: switch on Apply Modifiers")
+            raise Refused(told.format(each.name))
     try:
         kept = half.of(thing, names) if wanted.mirror_modifier == "HALF" else None
     except half.NoHalf as error:
@@ -168,7 +173,7 @@ def none(thing: bpy.types.Object) -> Stack:
     """That nothing goes in: the mesh is taken as it is stored; raises `Refused`."""
     for each in thing.modifiers:
         if each.type == "MULTIRES" and each.total_levels:
-            raise Refused(f"apply or remove modifier {each.name} first: it holds a sculpt")
+            raise Refused(rpt_(_SCULPT).format(each.name))
     return Stack((), (), None)
 
 
@@ -201,10 +206,14 @@ def seen(copies: StandIns, thing: bpy.types.Object, given: Stack) -> Seen:
     mesh, moved, lost = copy.evaluated_with_keys(given.names)
     told = ", ".join(given.names)
     if not mesh.polygons and thing.data.polygons:
-        raise Refused(f"modifiers {told} leave no faces; instances have to be realized first")
+        why = rpt_("modifiers {} leave no faces; instances have to be realized first")
+        raise Refused(why.format(told))
     if _is_torn(thing.data, mesh):
-        why = f"modifiers {told} tear it open where vertices only lie on each other"
-        raise Refused(f"{why}: merge them by distance, or switch off Apply Modifiers")
+        why = rpt_(
+            "modifiers {} tear it open where vertices only lie on each other: merge them by "
+            "distance, or switch off Apply Modifiers"
+        )
+        raise Refused(why.format(told))
     copy.thing.data = mesh
     base = mesh_arrays.read(thing.data)
     materials = tuple(each and (each.name, _file_of(each)) for each in mesh.materials)
@@ -283,8 +292,9 @@ def _unseen_levels(context: bpy.types.Context, modifier: bpy.types.Modifier) -> 
     if seen_levels == last:
         return ""
     first = seen_levels + 1
-    which = f"level {last}" if first == last else f"levels {first} to {last}"
-    return f"{which} of modifier {modifier.name}"
+    if first == last:
+        return rpt_("level {} of modifier {}").format(last, modifier.name)
+    return rpt_("levels {} to {} of modifier {}").format(first, last, modifier.name)
 
 
 def _settings(thing: bpy.types.Object, modifier: bpy.types.Modifier | None) -> Any:  # noqa: ANN401
@@ -318,14 +328,14 @@ def _dropped(thing: bpy.types.Object, mesh: bpy.types.Mesh) -> list[str]:
     """What of the artist's is on an object's mesh, but not on what modifiers have made of it."""
     base = thing.data
     is_turned = base.has_custom_normals and not mesh.has_custom_normals
-    told = ["custom normals"] * is_turned + [
-        f"attribute {layer.name}"
+    told = [rpt_("custom normals")] * is_turned + [
+        rpt_("attribute {}").format(layer.name)
         for domain in ("POINT", "EDGE", "CORNER", "FACE")
         for layer in layers.read(base, domain)
         if layer.name not in _SHADING and layer.name not in mesh.attributes and layer.values.any()
     ]
     if thing.vertex_groups and _is_weighted(base) and not _is_weighted(mesh):
-        told.append("vertex groups")
+        told.append(rpt_("vertex groups"))
     return told
 
 

@@ -9,6 +9,7 @@ import bpy
 
 from . import modifiers
 from .stand_in import stand_ins
+from .translations import rpt_
 
 
 class Gone(Exception):
@@ -57,10 +58,11 @@ def of(thing: bpy.types.Object) -> bpy.types.Object:
     """The original of an object; raises `Gone` where it has none."""
     found = thing.orbflow_original
     if found is None:
-        raise Gone(f"{thing.name} has no original: tick Original before Orbflow Remesh")
+        told = rpt_("{} has no original: tick Original before Orbflow Remesh")
+        raise Gone(told.format(thing.name))
     # What is deleted stays in the file as long as something names it.
     if not found.users_collection or found.type != "MESH" or not found.data.polygons:
-        raise Gone(f"the original of {thing.name} is gone")
+        raise Gone(rpt_("the original of {} is gone").format(thing.name))
     return found
 
 

@@ -13,6 +13,7 @@ from .job import Done, Failed
 from .mesh_arrays import MeshArrays
 from .runs import Left, Line, Print
 from .spots import Complaint, Numbers
+from .translations import n_, rpt_
 
 
 @dataclass(frozen=True)
@@ -84,8 +85,8 @@ def refused(failed: Failed) -> Told:
     said = "; ".join(each.words for each in complaints)
     if thing and _is_only_one(failed.name):
         told = complaints or [Complaint(failed.error, failed.error, None)]
-        runs.remember_left(thing, Left("{} was left as it was", True, told))
-    text = f"{said} \nIn exact words: {failed.error}" if said else failed.error
+        runs.remember_left(thing, Left(n_("{} was left as it was"), True, told))
+    text = rpt_("{} \nIn exact words: {}").format(said, failed.error) if said else failed.error
     names = (failed.name, *(task.others if task else ()))
     return Told([_line(name, "refused", said or failed.error) for name in names], text, True)
 

@@ -9,6 +9,7 @@ import bpy
 from . import earlier, runs, settings, words
 from .job import running
 from .runs import Left, Line
+from .translations import iface_, n_, rpt_
 
 # How much of a panel's width there is for no letter of a sentence, and how wide a letter is.
 _MARGIN_PX = 70.0
@@ -26,29 +27,29 @@ _RATIOS = (10, 25, 50)
 _BOXES = {"marked_edges"}
 # What stands in an empty field.
 _PLACEHOLDERS = {
-    "density": "Group or Color",
-    "guides": "Collection or Object",
-    "keep_faces": "Group or Face Set",
+    "density": n_("Group or Color"),
+    "guides": n_("Collection or Object"),
+    "keep_faces": n_("Group or Face Set"),
 }
 # What the menu has beside the run.
 _ENTRIES = (
-    ("object.orbflow_draw_guides", "Draw Guides", "GREASEPENCIL"),
-    ("object.orbflow_paint_density", "Paint Density", "BRUSH_DATA"),
-    ("object.orbflow_bake_detail", "Bake Detail", "MOD_MULTIRES"),
-    ("object.orbflow_bake_normal_map", "Bake Normal Map", "IMAGE_DATA"),
-    ("object.orbflow_before", "Before / After", "ARROW_LEFTRIGHT"),
+    ("object.orbflow_draw_guides", n_("Draw Guides"), "GREASEPENCIL"),
+    ("object.orbflow_paint_density", n_("Paint Density"), "BRUSH_DATA"),
+    ("object.orbflow_bake_detail", n_("Bake Detail"), "MOD_MULTIRES"),
+    ("object.orbflow_bake_normal_map", n_("Bake Normal Map"), "IMAGE_DATA"),
+    ("object.orbflow_before", n_("Before / After"), "ARROW_LEFTRIGHT"),
 )
 _ROWS = (
-    ("Faces", "n_faces", "{:,}"),
-    ("Quads", "quads_pct", "{:.0f} %"),
-    ("Irregular vertices", "irregular_pct", "{:.1f} %"),
-    ("Irregular on borders", "border_irregular_pct", "{:.1f} %"),
-    ("Flow deviation", "alignment_deg", "{:.1f}°"),
-    ("On closed loops", "loop_edges_pct", "{:.0f} %"),
-    ("In spirals", "spiral_pct", "{:.0f} %"),
-    ("Edge variation", "edge_cv", "{:.2f}"),
-    ("Mean distance", "chamfer_pct", "{:.3f} % of size"),
-    ("Largest distance", "hausdorff_pct", "{:.2f} % of size"),
+    (n_("Faces"), "n_faces", "{:,}"),
+    (n_("Quads"), "quads_pct", "{:.0f} %"),
+    (n_("Irregular vertices"), "irregular_pct", "{:.1f} %"),
+    (n_("Irregular, border"), "border_irregular_pct", "{:.1f} %"),
+    (n_("Flow deviation"), "alignment_deg", "{:.1f}°"),
+    (n_("On closed loops"), "loop_edges_pct", "{:.0f} %"),
+    (n_("In spirals"), "spiral_pct", "{:.0f} %"),
+    (n_("Edge variation"), "edge_cv", "{:.2f}"),
+    (n_("Mean distance"), "chamfer_pct", n_("{:.3f} % of size")),
+    (n_("Largest distance"), "hausdorff_pct", n_("{:.2f} % of size")),
 )
 
 
@@ -80,15 +81,28 @@ class VIEW3D_PT_orbflow(bpy.types.Panel):
         row = layout.row()
         row.active = earlier.may_be(context.object)
         row.prop(context.window_manager, "orbflow_before", slider=True)
-        column = layout.column(heading="Show")
-        column.prop(context.scene.orbflow, "show_size")
-        column.prop(context.scene.orbflow, "show_irregular")
+        column = layout.column(heading=n_("Show"))
+        _draw_show(column, wanted, context.object)
         last = runs.last_of(context.object)
         crosses = column.row()
         crosses.active = last is not None and len(last.crosses) > 0
         crosses.prop(context.scene.orbflow, "show_crosses")
         if last:
             _draw_score(layout.box().column(align=True), last.report, n_letters)
+
+
+def _draw_show(
+    column: bpy.types.UILayout, wanted: settings.OrbflowSettings, thing: bpy.types.Object | None
+) -> None:
+    """What is drawn over the active mesh, and what its colors stand for."""
+    if thing and thing.type == "MESH":
+        column.prop(thing, "show_wire", text="Wireframe")
+    column.prop(wanted, "show_size")
+    if wanted.show_size:
+        column.label(text=n_("Blue: large, red: small"))
+    column.prop(wanted, "show_irregular")
+    if wanted.show_irregular:
+        column.label(text=n_("Blue: 3 edges, red: 5"))
 
 
 def _draw_section(layout: bpy.types.UILayout, wanted: settings.Settings, title: str) -> None:
@@ -108,7 +122,7 @@ def _draw_section(layout: bpy.types.UILayout, wanted: settings.Settings, title: 
 def _draw_detail(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """What takes relief from the original, once there is one."""
     header, body = layout.panel("orbflow_Detail", default_closed=True)
-    header.label(text="Detail")
+    header.label(text=n_("Detail"))
     if not body:
         return
     thing = context.object
@@ -133,12 +147,12 @@ class VIEW3D_MT_orbflow(bpy.types.Menu):
 def draw_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     """The entries in the Object menu: what is searched for are the words of menus."""
     menu.layout.separator()
-    _button(menu.layout, context, "Orbflow Remesh (Quad Retopology)")
+    _button(menu.layout, context, n_("Orbflow Remesh (Quad Retopology)"))
     menu.layout.menu("VIEW3D_MT_orbflow")
 
 
 def _button(
-    layout: bpy.types.UILayout, context: bpy.types.Context, text: str = "Orbflow Remesh"
+    layout: bpy.types.UILayout, context: bpy.types.Context, text: str = n_("Orbflow Remesh")
 ) -> None:
     button = layout.operator("object.orbflow_remesh", text=text, icon="MOD_REMESH")
     settings.copy(context.scene.orbflow, button)
@@ -162,12 +176,25 @@ def _draw_size(
             button.data_path, button.value = "scene.orbflow.ratio", ratio
     thing = context.object
     if thing and thing.type == "MESH" and wanted.size != "EDGE":
-        seen = thing.evaluated_get(context.evaluated_depsgraph_get())
-        n = len((seen if wanted.use_modifiers else thing).data.polygons)
-        told = f"{words.count(n, 'face')} now"
+        n, is_editing = _n_faces_now(wanted, context)
+        told = words.count(n, n_("{:,} face now"), n_("{:,} faces now"))
+        if is_editing:
+            told = words.count(n, n_("{:,} face selected"), n_("{:,} faces selected"))
         if wanted.size == "RATIO":
-            told = f"{round(n * wanted.ratio / 100):,} of {words.count(n, 'face')}"
+            n_asked = round(n * wanted.ratio / 100)
+            n_faces = words.count(n, n_("{:,} face"), n_("{:,} faces"))
+            told = rpt_("{:,} of {}").format(n_asked, n_faces)
         layout.label(text=told, icon="MESH_DATA")
+
+
+def _n_faces_now(wanted: settings.Settings, context: bpy.types.Context) -> tuple[int, bool]:
+    """How many faces the active mesh has; in edit mode, of what is selected, and that it is so."""
+    thing = context.object
+    # What is evaluated then has no faces of its own.
+    if thing.mode == "EDIT":
+        return thing.data.total_face_sel, True
+    seen = thing.evaluated_get(context.evaluated_depsgraph_get())
+    return len((seen if wanted.use_modifiers else thing).data.polygons), False
 
 
 def _draw_settings(
@@ -181,7 +208,7 @@ def _draw_settings(
         # Beside each other the names of several boxes would be cut.
         row = layout.column() if name in _BOXES else layout.row()
         row.active = settings.is_of_use(wanted, name)
-        row.prop(wanted, name, placeholder=_PLACEHOLDERS.get(name, ""))
+        row.prop(wanted, name, placeholder=iface_(_PLACEHOLDERS.get(name, "")))
 
 
 def redraw_status_bar(context: bpy.types.Context) -> None:
@@ -212,7 +239,7 @@ def rows(report: dict[str, Any]) -> list[tuple[str, str]]:
     if not figures["quads_pct"]:
         del figures["quads_pct"]
     score = [
-        (what, form.format(figures[name]) + words.beside_artists(name, figures))
+        (what, rpt_(form).format(figures[name]) + words.beside_artists(name, figures))
         for what, name, form in _ROWS
         if figures.get(name) is not None
     ]
@@ -224,7 +251,7 @@ def _symmetry(report: dict[str, Any]) -> list[tuple[str, str]]:
     told = [(part["mirrored"] or {}).get("status") for part in report["parts"]]
     if not {"used", "image"} & set(told):
         return []
-    return [("Symmetric across", "XYZ"[report["plane"]["axis"]])]
+    return [(n_("Symmetric across"), "XYZ"[report["plane"]["axis"]])]
 
 
 def _proposal(embedding: dict[str, Any]) -> list[tuple[str, str]]:
@@ -236,12 +263,12 @@ def _proposal(embedding: dict[str, Any]) -> list[tuple[str, str]]:
     moved, n_vertices = embedding["repair"]["n_moved"], proposal["n_vertices"]
     weights = embedding["weights"]
     return [
-        ("Proposed by", embedding["predictor"]),
-        ("Weights", "shipped" if weights["shipped"] else weights["sum"]),
-        ("Folds proposed", f"{proposal['folds_pct']:.1f} %"),
-        ("Distortion", f"{proposal['energy']:.2f} → {embedding['energy']:.2f}"),
-        ("Vertices repaired", f"{moved:,} of {n_vertices:,}"),
-        ("Relaxations", f"{relaxed:,}"),
+        (n_("Proposed by"), embedding["predictor"]),
+        (n_("Weights"), rpt_("shipped") if weights["shipped"] else weights["sum"]),
+        (n_("Folds proposed"), f"{proposal['folds_pct']:.1f} %"),
+        (n_("Distortion"), f"{proposal['energy']:.2f} → {embedding['energy']:.2f}"),
+        (n_("Vertices repaired"), rpt_("{:,} of {}").format(moved, f"{n_vertices:,}")),
+        (n_("Relaxations"), f"{relaxed:,}"),
     ]
 
 
@@ -267,7 +294,7 @@ def _draw_lines(column: bpy.types.UILayout, lines: list[Line], n_letters: int) -
         )
         button.name = line.name
     if len(lines) > _MOST_LINES:
-        column.label(text=f"and {len(lines) - _MOST_LINES:,} more", icon="BLANK1")
+        column.label(text=rpt_("and {:,} more").format(len(lines) - _MOST_LINES), icon="BLANK1")
 
 
 def _draw_left(
@@ -276,13 +303,13 @@ def _draw_left(
     """Why an object, or parts of it, were left as they were, each with the button Show."""
     icon = "CANCEL" if left.is_whole else "ERROR"
     if left.title:
-        _draw_text(column, left.title.format(name), icon, _n_letters(context))
+        _draw_text(column, rpt_(left.title).format(name), icon, _n_letters(context))
     for i, complaint in enumerate(left.complaints):
         share = _BESIDE if complaint.spot else 1.0
         row = column.split(factor=share)
         _draw_text(row.column(align=True), complaint.words, "DOT", _n_letters(context, share))
         if complaint.spot:
-            button = row.operator("object.orbflow_show", text="Show")
+            button = row.operator("object.orbflow_show", text=n_("Show"))
             button.name, button.row = name, i
 
 

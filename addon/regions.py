@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from . import attributes
 from .artist.groups import Group
+from .translations import rpt_
 
 Flags = NDArray[np.bool_]
 
@@ -47,16 +48,16 @@ def kept(thing: bpy.types.Object, name: str, groups: list[Group]) -> Flags | Non
             return np.logical_and.reduceat(corners, attributes.loop_starts(thing.data))
     if name in {each for each, _ in names(thing)}:
         return _of_faces(thing.data, name)
-    offered = ", ".join(each for each, _ in names(thing)) or "none"
-    kinds = "vertex group, face set or face attribute"
-    raise NoRegion(f"no {kinds} is named '{name}'; there are: {offered}")
+    offered = ", ".join(each for each, _ in names(thing)) or rpt_("none")
+    told = rpt_("no vertex group, face set or face attribute is named '{}'; there are: {}")
+    raise NoRegion(told.format(name, offered))
 
 
 def unselected(mesh: bpy.types.Mesh) -> Flags:
     """Which faces are not selected; raises `NoRegion` where all are."""
     chosen = attributes.values(mesh, _SELECTED, "FACE", "BOOLEAN")
     if chosen is None or not chosen.any():
-        raise NoRegion("no face is selected: in edit mode the selected ones are remeshed")
+        raise NoRegion(rpt_("no face is selected: in edit mode the selected ones are remeshed"))
     return ~chosen
 
 

@@ -10,6 +10,7 @@ import orbflow_native
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from . import choices, named, preferences
+from .translations import CONTEXT, n_
 
 # How many crosses of the field a result brings: enough to read the field, a tenth of a megabyte.
 N_CROSSES = 4000
@@ -113,6 +114,7 @@ class Settings:
     )
     use_modifiers: BoolProperty(
         name="Apply Modifiers",
+        translation_context=CONTEXT,
         description=(
             "Remesh what is seen: modifiers that make geometry, such as Mirror and Subdivision, go "
             "into the result and leave the stack; those that follow a pose or time stay"
@@ -160,6 +162,7 @@ class Settings:
     )
     handles: EnumProperty(
         name="Handles",
+        translation_context=CONTEXT,
         description="What becomes of handles, as of a cup, and of holes that go through",
         items=choices.HANDLES,
     )
@@ -276,16 +279,16 @@ _BY_SIZE = {"FACES": "faces", "RATIO": "ratio", "EDGE": "edge_length"}
 #: The settings beside the button, and those in the sections of the panel below it.
 FIRST = ("kind", "size", "faces", "ratio", "edge_length")
 SECTIONS = {
-    "Shape": ("follow_shape", "adaptivity", "sharp_angle", "own_quads"),
-    "Symmetry": ("mirror", "mirror_modifier"),
-    "Guides and Density": ("guides", "guide_strength", "marked_edges", "density"),
-    "Keep": (
+    n_("Shape"): ("follow_shape", "adaptivity", "sharp_angle", "own_quads"),
+    n_("Symmetry"): ("mirror", "mirror_modifier"),
+    n_("Guides and Density"): ("guides", "guide_strength", "marked_edges", "density"),
+    n_("Keep"): (
         "keep_faces",
         *("borders", "fill_size", "handles", "seal_size", "solid", "solid_detail", "inner"),
         *("small_parts", "small_size"),
         *("use_modifiers", "use_weld", "weld", "keep_original", "weights_limit"),
     ),
-    "Advanced": ("primitive", "predictor", "threads", "seed"),
+    n_("Advanced"): ("primitive", "predictor", "threads", "seed"),
 }
 
 

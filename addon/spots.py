@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from . import attributes, words
 from .guides.strokes import Stroke
 from .mesh_arrays import MeshArrays
+from .translations import n_, rpt_
 
 Int = NDArray[np.int32]
 _Reason = tuple[dict[str, Any], dict[str, Any]]
@@ -103,7 +104,9 @@ def made(result: orbflow_native.Remeshed, told: list[str]) -> list[Complaint]:
         return []
     corners = result.corner_vert[result.loop_start[faces[0]] :][:3]
     place = tuple(result.positions[corners].mean(0).tolist())
-    exact = words.count(len(faces), "face") + " on what was closed for good"
+    one = n_("{:,} face on what was closed for good")
+    many = n_("{:,} faces on what was closed for good")
+    exact = words.count(len(faces), one, many)
     return [Complaint(", ".join(told), exact, Spot(np.zeros((0, 2), np.int32), faces, place))]
 
 
@@ -126,11 +129,11 @@ def _lost(mesh: bpy.types.Mesh, strokes: list[Stroke], outcomes: list[dict[str, 
     squares = [((middles - point) ** 2).sum(axis=1) for point in some]
     faces = np.unique([each.argmin() for each in squares]).astype(np.int32)
     exact = words.first_of([each["text"] for each in outcomes])
-    told = f"guide {strokes[0].name} is lost"
+    told = rpt_("guide {} is lost").format(strokes[0].name)
     if len(strokes) > 1:
-        told = f"{len(strokes):,} guides are lost"
+        told = rpt_("{:,} guides are lost").format(len(strokes))
     elif off := words.off_guides(outcomes):
-        told += f": {off} off"
+        told += ": " + rpt_("{} off").format(off)
     return Complaint(told, exact, Spot(np.zeros((0, 2), np.int32), faces, tuple(some[0])))
 
 
@@ -145,14 +148,15 @@ def _middles(mesh: bpy.types.Mesh) -> NDArray[np.floating]:
 def _complaint(group: list[_Reason], numbers: Numbers, n_parts: int) -> Complaint:
     (part, reason), *others = group
     if others:
-        told = f"{len(group):,} parts {words.OF_MANY[reason['kind']]}"
+        told = rpt_("{:,} parts {}").format(len(group), words.of_many(reason["kind"]))
     elif n_parts > 1:
-        told = f"part of {words.count(part['n_faces'], 'face')}: {words.reason(reason)}"
+        n_faces = words.count(part["n_faces"], n_("{:,} face"), n_("{:,} faces"))
+        told = rpt_("part of {}: {}").format(n_faces, words.reason(reason))
     else:
         told = words.reason(reason)
     exact = words.first_of([reason["text"] for _, reason in group])
     if part["outcome"] == "dropped":
-        return Complaint(f"{told}; left out", exact, None)
+        return Complaint(rpt_("{}; left out").format(told), exact, None)
     spots = [numbers.of(reason) for _, reason in group]
     edges, faces = (np.concatenate([getattr(spot, name) for spot in spots]) for name in _ELEMENTS)
     return Complaint(told, exact, Spot(edges, faces, spots[0].place))

@@ -11,6 +11,7 @@ import numpy as np
 from . import attributes
 from .artist import keys
 from .artist.keys import Key
+from .translations import rpt_
 
 # What is simulated with other objects: a copy would collide with the object that it stands for.
 _SIMULATED = {"CLOTH", "COLLISION", "PARTICLE_SYSTEM", "SOFT_BODY"}
@@ -75,7 +76,7 @@ class StandIn:
         mesh = self._moulded(rest, names)
         moved = [self._moved(key, rest, mesh, names) for key in given]
         kept = _whole([each for each in moved if each])
-        lost = [f"shape key {key.name}" for key in given if key.name not in kept]
+        lost = [rpt_("shape key {}").format(key.name) for key in given if key.name not in kept]
         if len(given) > 1 and len(kept) == 1:
             # None is left but the first: what is seen is their mix.
             self.thing.data = self._own

@@ -4,6 +4,7 @@
 import bpy
 
 from .operators import draw_guide
+from .translations import n_, rpt_
 
 _DRAW, _ERASE = "object.orbflow_draw_guide", "object.orbflow_erase_guide"
 _PRESS = {"type": "LEFTMOUSE", "value": "PRESS"}
@@ -38,7 +39,7 @@ class DrawGuides(bpy.types.WorkSpaceTool):
         thing = draw_guide.target(context)
         if thing is not None:
             row = layout.row(align=True)
-            row.label(text="Mirror")
+            row.label(text=n_("Mirror"))
             for axis in "xyz":
                 row.prop(thing.data, f"use_mirror_{axis}", text=axis.upper(), toggle=True)
         layout.prop(context.scene.orbflow, "guides")
@@ -58,7 +59,7 @@ class OBJECT_OT_orbflow_draw_guides(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Makes the tool the active one of the 3D view."""
         if context.area is None or context.area.type != "VIEW_3D":
-            self.report({"ERROR"}, "guides are drawn in a 3D view")
+            self.report({"ERROR"}, rpt_("guides are drawn in a 3D view"))
             return {"CANCELLED"}
         return bpy.ops.wm.tool_set_by_id(name=DrawGuides.bl_idname)
 

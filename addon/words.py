@@ -4,53 +4,98 @@
 import math
 from typing import Any
 
+from .translations import n_, rpt_
+
 #: The steps of a run, by the core's names of them.
 STEPS = {
-    "starting": "starting",
-    "clean": "checking the mesh",
-    "solid": "making it solid",
-    "close": "closing holes",
-    "decimate": "unfolding",
-    "embed": "unfolding",
-    "sphere": "mapping",
-    "flow": "laying the loops",
-    "pair": "pairing triangles into quads",
-    "deform": "fitting to the surface",
-    "transfer": "carrying over your data",
-    "score": "measuring",
+    "starting": n_("starting"),
+    "clean": n_("checking the mesh"),
+    "solid": n_("making it solid"),
+    "close": n_("closing holes"),
+    "decimate": n_("unfolding"),
+    "embed": n_("unfolding"),
+    "sphere": n_("mapping"),
+    "flow": n_("laying the loops"),
+    "pair": n_("pairing triangles into quads"),
+    "deform": n_("fitting to the surface"),
+    "transfer": n_("carrying over your data"),
+    "score": n_("measuring"),
 }
 # What cleaning drops, of one and of many.
 _CLEANED = (
-    ("n_isolated", ("loose vertex", "loose vertices")),
-    ("n_degenerate", ("face of fewer than 3 corners", "faces of fewer than 3 corners")),
-    ("n_duplicates", ("face that is there twice", "faces that are there twice")),
-    ("n_doubled", ("triangle back to back with another", "triangles back to back with others")),
+    ("n_isolated", n_("{:,} loose vertex"), n_("{:,} loose vertices")),
+    (
+        "n_degenerate",
+        n_("{:,} face of fewer than 3 corners"),
+        n_("{:,} faces of fewer than 3 corners"),
+    ),
+    ("n_duplicates", n_("{:,} face that is there twice"), n_("{:,} faces that are there twice")),
+    (
+        "n_doubled",
+        n_("{:,} triangle back to back with another"),
+        n_("{:,} triangles back to back with others"),
+    ),
 )
-# The only ones that leave a part for borders or handles are those that are the same for all shapes.
-_CLOSED_ALONE = ", which this primitive cannot have: choose Automatic"
-_FILL = ", or fill all borders"
-#: What parts are that were left, by the kind of reason.
-OF_MANY = {
-    "border": f"with holes (open edges){_CLOSED_ALONE}{_FILL}",
-    "handles": f"with a hole through it like a ring or cup handle{_CLOSED_ALONE}",
-    "one-sided": "whose inside and outside cannot be told apart (like a Moebius strip)",
-    "flat": "flat",
-    "small": "too small for this face count",
-    "inside": "inside others",
-    "failed": "that could not be done",
+# What parts are that were left, by the kind of reason. The only primitives that leave a part for
+# borders or handles are those that are the same for all shapes.
+_OF_MANY = {
+    "border": n_(
+        "with holes (open edges), which this primitive cannot have: choose Automatic, or fill all "
+        "borders"
+    ),
+    "handles": n_(
+        "with a hole through it like a ring or cup handle, which this primitive cannot have: "
+        "choose Automatic"
+    ),
+    "one-sided": n_("whose inside and outside cannot be told apart (like a Moebius strip)"),
+    "flat": n_("flat"),
+    "small": n_("too small for this face count"),
+    "inside": n_("inside others"),
+    "failed": n_("that could not be done"),
 }
 # Why one part is left, where that has no numbers.
 _OF_ONE = {
-    "one-sided": "inside and outside cannot be told apart (like a Moebius strip)",
-    "flat": "is flat",
-    "small": "is too small for this face count",
-    "inside": "lies inside another",
+    "one-sided": n_("inside and outside cannot be told apart (like a Moebius strip)"),
+    "flat": n_("is flat"),
+    "small": n_("is too small for this face count"),
+    "inside": n_("lies inside another"),
 }
-_OUTCOMES = {"kept": "left as they were", "dropped": "left out"}
+_HOLES = (
+    n_(
+        "has {:,} hole (open edges), which this primitive cannot have: choose Automatic, or fill "
+        "all borders"
+    ),
+    n_(
+        "has {:,} holes (open edges), which this primitive cannot have: choose Automatic, or fill "
+        "all borders"
+    ),
+)
+_HANDLES = (
+    n_(
+        "has a hole through it like a ring or cup handle, which this primitive cannot have: "
+        "choose Automatic"
+    ),
+    n_(
+        "has {:,} holes through it like a ring or cup handle, which this primitive cannot have: "
+        "choose Automatic"
+    ),
+)
+_OUTCOMES = {
+    "kept": n_("{:,} of {:,} parts left as they were"),
+    "dropped": n_("{:,} of {:,} parts left out"),
+}
+# What became of several objects.
+_STATES = {
+    "done": n_("{:,} done"),
+    "warned": n_("{:,} with warnings"),
+    "refused": n_("{:,} refused"),
+}
 # What whole bodies, heads and props have that artists modelled: at least, at most.
 _OF_ARTISTS = {"loop_edges_pct": (33.0, math.inf), "spiral_pct": (0.0, 1.6)}
 # What becomes of the artist's lines.
-_HEEDED = ("laid", "followed", "lost")
+_HEEDED = {"laid": n_("{:,} laid"), "followed": n_("{:,} followed"), "lost": n_("{:,} lost")}
+# How far edges are off them.
+_OFF = (("distance", n_("{:.2f} edges")), ("angle", n_("{:.0f}°")))
 # Of more texts than these the rest is counted.
 _MOST_TEXTS = 3
 
@@ -61,53 +106,59 @@ def beside_artists(name: str, figures: dict[str, Any]) -> str:
         return ""
     least, most = _OF_ARTISTS[name]
     if figures[name] < least:
-        return ", by hand more"
-    return ", by hand less" if figures[name] > most else ", as by hand"
+        return rpt_(", by hand more")
+    return rpt_(", by hand less") if figures[name] > most else rpt_(", as by hand")
 
 
 def status(step: str, share: float, left_s: float | None) -> str:
     """How far a run is."""
-    left = "" if left_s is None else f", {_about(left_s)} left"
-    return f"{STEPS[step]}, {100 * share:.0f} %{left}"
+    left = "" if left_s is None else ", " + rpt_("{} left").format(_about(left_s))
+    return f"{rpt_(STEPS[step])}, {100 * share:.0f} %{left}"
 
 
 def _about(left_s: float) -> str:
     if left_s < 20:
-        return f"about {max(left_s, 1):.0f} s"
+        return rpt_("about {:.0f} s").format(max(left_s, 1))
     if left_s < 90:
-        return f"about {5 * round(left_s / 5)} s"
-    return f"about {left_s / 60:.0f} min"
+        return rpt_("about {:.0f} s").format(5 * round(left_s / 5))
+    return rpt_("about {:.0f} min").format(left_s / 60)
 
 
-def count(n: int, one: str, many: str = "") -> str:
-    """So many of something."""
-    return f"{n:,} {one if n == 1 else many or one + 's'}"
+def count(n: int, one: str, many: str) -> str:
+    """So many of something; `one` and `many` have a place for the number."""
+    return rpt_(one if n == 1 else many).format(n)
 
 
 def first_of(texts: list[str]) -> str:
     """The first texts, and how many more there are."""
     more = len(texts) - _MOST_TEXTS
-    return "; ".join(texts[:_MOST_TEXTS] + ([f"and {more:,} more"] if more > 0 else []))
+    return "; ".join(
+        texts[:_MOST_TEXTS] + ([rpt_("and {:,} more").format(more)] if more > 0 else [])
+    )
 
 
 def reason(reason: dict[str, Any]) -> str:
     """Why a part was left, as what it "has" or "is"."""
     kind = reason["kind"]
     if kind in _OF_ONE:
-        return _OF_ONE[kind]
+        return rpt_(_OF_ONE[kind])
     if kind == "border":
-        return f"has {count(reason['n_loops'], 'hole')} (open edges){_CLOSED_ALONE}{_FILL}"
+        return count(reason["n_loops"], *_HOLES)
     if kind == "handles":
-        through = "a hole" if reason["genus"] == 1 else f"{reason['genus']:,} holes"
-        return f"has {through} through it like a ring or cup handle{_CLOSED_ALONE}"
-    return f"could not be done: {reason['text']}"
+        return count(reason["genus"], *_HANDLES)
+    return rpt_("could not be done: {}").format(reason["text"])
+
+
+def of_many(kind: str) -> str:
+    """What parts are that were left for a kind of reason."""
+    return rpt_(_OF_MANY[kind])
 
 
 def sentence(report: dict[str, Any]) -> str:
     """What became of an object in one line; Blender joins lines without a space."""
     before, after = (report[side]["n_faces"] for side in ("input", "output"))
     told = [*warnings(report), *_kept(report, small=True), *exceptions(report)]
-    return "; ".join([f"{before:,} faces became {after:,}", *told])
+    return "; ".join([rpt_("{:,} faces became {:,}").format(before, after), *told])
 
 
 def line(report: dict[str, Any]) -> str:
@@ -118,9 +169,8 @@ def line(report: dict[str, Any]) -> str:
 
 def summary(states: list[str]) -> str:
     """What became of several objects in one line."""
-    told = (("done", "done"), ("warned", "with warnings"), ("refused", "refused"))
-    counts = [f"{states.count(state):,} {each}" for state, each in told if state in states]
-    return ", ".join(counts)
+    told = _STATES.items()
+    return ", ".join(rpt_(each).format(states.count(it)) for it, each in told if it in states)
 
 
 def faults(report: dict[str, Any]) -> list[str]:
@@ -150,7 +200,7 @@ def counts(report: dict[str, Any]) -> list[str]:
 
 def _count(report: dict[str, Any], outcome: str, n: int) -> str:
     n_parts = len(report["parts"]) + len(report["kept"])
-    return f"{n:,} of {n_parts:,} parts {_OUTCOMES[outcome]}"
+    return rpt_(_OUTCOMES[outcome]).format(n, n_parts)
 
 
 def _kept(report: dict[str, Any], *, small: bool) -> list[str]:
@@ -175,7 +225,7 @@ def _reasons(parts: list[dict[str, Any]]) -> list[str]:
     for each in (each for part in parts for each in part["reasons"]):
         kinds.setdefault(each["kind"], []).append(each)
     return [
-        reason(alike[0]) if len(parts) == 1 else f"{len(alike):,} {OF_MANY[kind]}"
+        reason(alike[0]) if len(parts) == 1 else f"{len(alike):,} {of_many(kind)}"
         for kind, alike in kinds.items()
     ]
 
@@ -183,47 +233,56 @@ def _reasons(parts: list[dict[str, Any]]) -> list[str]:
 def exceptions(report: dict[str, Any]) -> list[str]:
     """In words what else is otherwise than was asked for."""
     lost = ", ".join(sorted(set(report["lost"])))
-    told = [_without_marks(report), f"not carried over: {lost}" if lost else ""]
+    told = [_without_marks(report), rpt_("not carried over: {}").format(lost) if lost else ""]
     told += [_cleaned(report), _welded(report), _parted(report), _shown(report)]
     told += [_solid(report["solid"])] if report.get("solid") else []
     told += filled(report) + _modifiers(report)
     told += [each for each in lost_guides(report) if each not in faults(report)]
-    told += ["nothing that is shown of the guides lies where it is"] * report["is_unguided"]
+    if report["is_unguided"]:
+        told.append(rpt_("nothing that is shown of the guides lies where it is"))
     return [each for each in told if each]
 
 
 def _cleaned(report: dict[str, Any]) -> str:
     """What cleaning has dropped before the run."""
-    n = ((report["clean"][name], *each) for name, each in _CLEANED)
+    n = ((report["clean"][name], *each) for name, *each in _CLEANED)
     dropped = ", ".join(count(*each) for each in n if each[0])
-    return f"left out: {dropped}" if dropped else ""
+    return rpt_("left out: {}").format(dropped) if dropped else ""
 
 
 def _shown(report: dict[str, Any]) -> str:
     """How many faces were hidden: those of the result are not."""
     n = report["n_hidden"]
-    return f"{count(n, 'hidden face')} {'is' if n == 1 else 'are'} shown again" if n else ""
+    one, many = n_("{:,} hidden face is shown again"), n_("{:,} hidden faces are shown again")
+    return count(n, one, many) if n else ""
 
 
 def _welded(report: dict[str, Any]) -> str:
     """How many vertices of seams were welded."""
     n = report["clean"]["n_seam_welded"]
-    return f"{count(n, 'vertex', 'vertices')} of seams welded" if n else ""
+    one, many = n_("{:,} vertex of seams welded"), n_("{:,} vertices of seams welded")
+    return count(n, one, many) if n else ""
 
 
 def _parted(report: dict[str, Any]) -> str:
     """Where surfaces that share edges came apart."""
     n, sheets = (report["clean"][name] for name in ("n_shared_edges", "n_sheets"))
-    edges = f"{count(n, 'edge')} at which 3 or more faces meet"
-    return f"taken apart at {edges} into {count(sheets, 'sheet')}" if n else ""
+    if not n:
+        return ""
+    one = n_("taken apart at {:,} edge at which 3 or more faces meet")
+    many = n_("taken apart at {:,} edges at which 3 or more faces meet")
+    return count(n, one, many) + " " + count(sheets, n_("into {:,} sheet"), n_("into {:,} sheets"))
 
 
 def filled(report: dict[str, Any]) -> list[str]:
     """How many borders were filled, and how many handles sealed."""
     opened = [part["opened"] for part in report["parts"] if part["opened"]]
     n_filled, n_sealed = (sum(each[name] for each in opened) for name in ("n_filled", "n_sealed"))
-    told = [f"{count(n_filled, 'border')} filled"] if n_filled else []
-    return told + ([f"{count(n_sealed, 'handle')} sealed"] if n_sealed else [])
+    told = (
+        (n_filled, n_("{:,} border filled"), n_("{:,} borders filled")),
+        (n_sealed, n_("{:,} handle sealed"), n_("{:,} handles sealed")),
+    )
+    return [count(*each) for each in told if each[0]]
 
 
 def lost_guides(report: dict[str, Any]) -> list[str]:
@@ -231,26 +290,29 @@ def lost_guides(report: dict[str, Any]) -> list[str]:
     lost = [each["name"] for each in report["guides"] if each["outcome"] == "lost"]
     if not lost:
         return []
-    n, n_all = len(lost), count(len(report["guides"]), "guide")
-    return [f"{n:,} of {n_all} {'is' if n == 1 else 'are'} lost: {first_of(lost)}"]
+    n, n_all = len(lost), count(len(report["guides"]), n_("{:,} guide"), n_("{:,} guides"))
+    told = n_("{:,} of {} is lost: {}"), n_("{:,} of {} are lost: {}")
+    return [rpt_(told[n > 1]).format(n, n_all, first_of(lost))]
 
 
 def guides(report: dict[str, Any]) -> list[tuple[str, str]]:
     """How the artist's lines were heeded, and how far edges are off them at most."""
     given = report["guides"]
-    counts = [(sum(each["outcome"] == name for each in given), name) for name in _HEEDED]
+    counts = [
+        (sum(each["outcome"] == name for each in given), what) for name, what in _HEEDED.items()
+    ]
     if not given:
         return []
-    rows = [("Guides", ", ".join(f"{n:,} {name}" for n, name in counts if n))]
+    rows = [(n_("Guides"), ", ".join(rpt_(what).format(n) for n, what in counts if n))]
     off = off_guides([each for each in given if each["outcome"] != "lost"])
-    return rows + ([("Off guides by", off)] if off else [])
+    return rows + ([(n_("Off guides by"), off)] if off else [])
 
 
 def off_guides(given: list[dict[str, Any]]) -> str:
     """How far edges are off some of the artist's lines, of the worst; empty where nobody knows."""
     off = [
-        form.format(max(figures))
-        for name, form in (("distance", "{:.2f} edges"), ("angle", "{:.0f}°"))
+        rpt_(form).format(max(figures))
+        for name, form in _OFF
         if (figures := [each[name] for each in given if each[name] is not None])
     ]
     return ", ".join(off)
@@ -259,23 +321,27 @@ def off_guides(given: list[dict[str, Any]]) -> str:
 def _solid(solid: dict[str, Any]) -> str:
     """What became of the shells that were made one surface."""
     counts = (
-        ("n_walls", "with open edges closed"),
-        ("n_turned", "turned inside out"),
-        ("n_sheets", "made thick"),
-        ("n_scraps", "left out: too small to be made thick"),
+        ("n_walls", n_("{:,} with open edges closed")),
+        ("n_turned", n_("{:,} turned inside out")),
+        ("n_sheets", n_("{:,} made thick")),
+        ("n_scraps", n_("{:,} left out: too small to be made thick")),
     )
-    told = [f"{solid[name]:,} {what}" for name, what in counts if solid[name]]
-    told += [f"{count(solid['n_dropped'], 'speck')} left out"] if solid["n_dropped"] else []
-    shells, pieces = count(solid["n_shells"], "shell"), count(solid["n_pieces"], "closed surface")
-    return f"{shells} made {pieces}" + (f" ({', '.join(told)})" if told else "")
+    told = [rpt_(what).format(solid[name]) for name, what in counts if solid[name]]
+    if n := solid["n_dropped"]:
+        told.append(count(n, n_("{:,} speck left out"), n_("{:,} specks left out")))
+    shells = count(solid["n_shells"], n_("{:,} shell"), n_("{:,} shells"))
+    pieces = count(solid["n_pieces"], n_("{:,} closed surface"), n_("{:,} closed surfaces"))
+    made = rpt_("{} made {}").format(shells, pieces)
+    return made + (f" ({', '.join(told)})" if told else "")
 
 
 def _modifiers(report: dict[str, Any]) -> list[str]:
     """Which modifiers went into the result, which makes it whole, and which may not fit it."""
     names, half = ", ".join(report["modifiers"]), report["half"]
-    told = [f"modifiers applied: {names}" if names else ""]
-    told += [f"half is kept: modifier {half} makes it whole" if half else ""]
-    told += [f"modifier {name} stays: see whether it fits the new mesh" for name in report["nodes"]]
+    told = [rpt_("modifiers applied: {}").format(names) if names else ""]
+    told += [rpt_("half is kept: modifier {} makes it whole").format(half) if half else ""]
+    stays = rpt_("modifier {} stays: see whether it fits the new mesh")
+    told += [stays.format(name) for name in report["nodes"]]
     return [each for each in told if each]
 
 
@@ -284,8 +350,12 @@ def _without_marks(report: dict[str, Any]) -> str:
     if any(each["kind"] == "lines" for each in report["warnings"]):
         return ""
     gone = 100 - report["carried"]["length_pct"] if report["carried"] else 0
-    marks = "marks of edges"
-    if report["has_normals"]:
-        marks += " and breaks of custom normals"
+    told = (
+        n_("{:.0f} % of the marks of edges are gone: no edge lies there"),
+        n_(
+            "{:.0f} % of the marks of edges and breaks of custom normals are gone: no edge lies "
+            "there"
+        ),
+    )
     # Chords are shorter than what they stand for.
-    return f"{gone:.0f} % of the {marks} are gone: no edge lies there" if gone > 5 else ""
+    return rpt_(told[report["has_normals"]]).format(gone) if gone > 5 else ""

@@ -8,6 +8,8 @@ import tomllib
 import zipfile
 from pathlib import Path
 
+import manual
+
 ROOT = Path(__file__).resolve().parent.parent
 ADDON = ROOT / "addon"
 # Part of a wheel's platform tag -> Blender's name of the platform.
@@ -44,6 +46,7 @@ def build(wheel: Path, out: Path) -> Path:
     path = out / f"orbflow-{version}-{platform(wheel).replace('-', '_')}.zip"
     members = {
         "blender_manifest.toml": manifest(wheel).encode(),
+        "manual.html": manual.page((ROOT / "docs" / "blender.md").read_text()).encode(),
         "LICENSE": (ROOT / "LICENSE-GPL").read_bytes(),
         f"wheels/{wheel.name}": wheel.read_bytes(),
     }

@@ -63,7 +63,7 @@ def test_detail_is_on_as_many_levels_as_it_takes(
     assert len(made) > 3000
     assert np.abs(heights(made)).mean() < 0.003
     told = capfd.readouterr().out
-    assert f"{modifier.total_levels} levels, {6 * 49 * 16:,} faces of Multires" in told
+    assert f"{modifier.total_levels} levels of Multires, {6 * 49 * 16:,} faces" in told
     first, last = re.findall(r"([\d.]+) % of size \(at most", told)
     assert float(last) < float(first) / 3
     assert press.orbflow_bake_detail(levels=1) == {"FINISHED"}

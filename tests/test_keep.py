@@ -7,6 +7,7 @@ import numpy as np
 import orbflow_native
 import pytest
 from shapes import Arrays, ball
+from sidebar import drawn
 from test_operator import Open, addon, is_sound, press
 
 N_KEPT = 120
@@ -149,3 +150,17 @@ def test_in_edit_mode_something_has_to_be_selected(open_fixture: Open) -> None:
     assert bpy.context.mode == "EDIT_MESH"
     bpy.ops.object.mode_set(mode="OBJECT")
     assert len(first.data.polygons) == 1280
+
+
+def test_in_edit_mode_the_panel_tells_how_many_faces_are_selected(open_fixture: Open) -> None:
+    thing: Any = open_fixture("01")
+    bpy.ops.object.mode_set(mode="EDIT")
+    try:
+        bpy.ops.mesh.select_all(action="SELECT")
+        told = [text for text, _ in drawn(thing) if text.startswith("MESH_DATA")]
+        assert told == [f"MESH_DATA {thing.data.total_face_sel:,} faces selected"]
+        assert thing.data.total_face_sel > 1000
+        bpy.ops.mesh.select_all(action="DESELECT")
+        assert [text for text, _ in drawn(thing) if "0 faces selected" in text]
+    finally:
+        bpy.ops.object.mode_set(mode="OBJECT")

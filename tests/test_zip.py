@@ -25,7 +25,8 @@ def test_it_is_small(extension_zip: Path) -> None:
 def test_it_holds_one_wheel_the_licence_and_nothing_else(extension_zip: Path) -> None:
     names = zipfile.ZipFile(extension_zip).namelist()
     others = [name for name in names if not name.endswith((".py", ".js"))]
-    assert [name.split("/")[0] for name in others] == ["LICENSE", "blender_manifest.toml", "wheels"]
+    first = [name.split("/")[0] for name in others]
+    assert first == ["LICENSE", "blender_manifest.toml", "manual.html", "wheels"]
     sources = {path.relative_to(ROOT / "addon").as_posix() for path in addon_sources()}
     assert sources == set(names) - set(others)
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import bpy
 import orbflow_native
 
+from ..translations import n_, rpt_
 from . import edges, elements, groups, keys, layers
 from .edges import Edges
 from .elements import Elements
@@ -63,13 +64,21 @@ def write(
 
 def _lost(mesh: bpy.types.Mesh) -> list[str]:
     n_loose = edges.n_loose(mesh)
-    lost = [f"{n_loose:,} loose edge{'s' * (n_loose > 1)}"] if n_loose else []
-    return lost + [f"attribute {each.name}" for each in mesh.attributes if layers.is_lost(each)]
+    one, many = n_("{:,} loose edge"), n_("{:,} loose edges")
+    lost = [rpt_(many if n_loose > 1 else one).format(n_loose)] if n_loose else []
+    told = rpt_("attribute {}")
+    return lost + [told.format(each.name) for each in mesh.attributes if layers.is_lost(each)]
 
 
 def _unbound(thing: bpy.types.Object) -> list[str]:
-    bound = [f"binding of modifier {each.name}" for each in thing.modifiers if _is_bound(each)]
-    baked = [f"bake of modifier {each.name}" for each in thing.modifiers if _is_baked(each)]
+    bound = [
+        rpt_("binding of modifier {}").format(each.name)
+        for each in thing.modifiers
+        if _is_bound(each)
+    ]
+    baked = [
+        rpt_("bake of modifier {}").format(each.name) for each in thing.modifiers if _is_baked(each)
+    ]
     return bound + baked
 
 

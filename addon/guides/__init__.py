@@ -13,6 +13,7 @@ import bpy
 import numpy as np
 
 from .. import words
+from ..translations import rpt_
 from . import curves, pencil, strokes
 from .strokes import Stroke
 
@@ -53,9 +54,9 @@ def read(context: bpy.types.Context, name: str, is_exact: bool) -> list[Stroke] 
         return list(_of_objects(context, shown, is_exact))
     noted = _annotation(context.scene)
     if noted is None or noted.name != name:
-        offered = ", ".join(each for each, _ in names(context)) or "none"
-        kinds = "collection, object or annotation with lines"
-        raise NoGuides(f"no {kinds} is named '{name}'; there are: {offered}")
+        offered = ", ".join(each for each, _ in names(context)) or rpt_("none")
+        told = rpt_("no collection, object or annotation with lines is named '{}'; there are: {}")
+        raise NoGuides(told.format(name, offered))
     drawn = list(pencil.of_annotation(noted, context.scene.frame_current))
     return list(_tidied(drawn, noted.name, None, is_exact))
 
@@ -173,7 +174,7 @@ def _tidied(
         line = strokes.tidied(each.points, each.is_closed)
         if line is None:
             continue
-        called = f"{name}, stroke {i + 1}" if len(drawn) > 1 else name
+        called = rpt_("{}, stroke {:,}").format(name, i + 1) if len(drawn) > 1 else name
         strength = strokes.is_exact((*each.names, name), is_exact)
         yield Stroke(*line, strength, called, owner)
 

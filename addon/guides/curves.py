@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import attributes
-from . import strokes
+from . import evaluated, strokes
 from .strokes import Points
 
 # A line, and whether it is closed.
@@ -37,22 +37,56 @@ def of_mesh(seen: bpy.types.Object) -> list[Line]:
 
 
 def of_layout(offsets: NDArray[np.int32], layers: bpy.types.bpy_prop_collection) -> Iterator[Line]:
-    """The lines of hair curves or of a drawing, whose points begin at these."""
-    if len(offsets) < 2:
+    """The lines of hair curves or of a drawing, whose points begin at these, as they are seen."""
+    n = len(offsets) - 1
+    if n < 1:
         return
-    points = np.empty((int(offsets[-1]), 3), np.float32)
-    layers["position"].data.foreach_get("vector", points.ravel())
-    closed = of_curves(layers, "cyclic", len(offsets) - 1)
+    points = _vectors(layers, "position", int(offsets[-1]))
+    sides = [_vectors(layers, f"handle_{side}", len(points)) for side in ("left", "right")]
+    weights = _numbers(layers, "nurbs_weight", len(points))
+    closed = of_curves(layers, "cyclic", n)
+    kinds = of_curves(layers, "curve_type", n, evaluated.CATMULL_ROM)
+    resolutions, orders = (
+        of_curves(layers, name, n, usual)
+        for name, usual in (("resolution", 12), ("nurbs_order", 4))
+    )
+    knots = of_curves(layers, "knots_mode", n)
     for i, (first, end) in enumerate(pairwise(offsets)):
-        yield points[first:end].astype(np.float64), bool(closed[i])
+        some = slice(first, end)
+        curve = evaluated.Curve(
+            points[some],
+            bool(closed[i]),
+            int(kinds[i]),
+            int(resolutions[i]),
+            (sides[0][some], sides[1][some]),
+            int(orders[i]),
+            int(knots[i]),
+            weights[some],
+        )
+        yield evaluated.line(curve), curve.is_closed
+
+
+def _vectors(layers: bpy.types.bpy_prop_collection, name: str, n: int) -> Points:
+    """An attribute of points; their places where there is none such."""
+    found = np.empty((n, 3), np.float32)
+    (layers.get(name) or layers["position"]).data.foreach_get("vector", found.ravel())
+    return found.astype(np.float64)
+
+
+def _numbers(layers: bpy.types.bpy_prop_collection, name: str, n: int) -> Points:
+    """A number of points; 1 where there is none such."""
+    found = np.ones(n, np.float32)
+    if (attribute := layers.get(name)) is not None:
+        attribute.data.foreach_get("value", found)
+    return found.astype(np.float64)
 
 
 def of_curves(
-    layers: bpy.types.bpy_prop_collection, name: str, n: int
+    layers: bpy.types.bpy_prop_collection, name: str, n: int, usual: int = 0
 ) -> NDArray[np.int32] | NDArray[np.bool_]:
-    """An attribute of curves; 0 where there is none such."""
+    """An attribute of curves; what is usual where there is none such."""
     attribute = layers.get(name)
-    found = np.zeros(n, bool if name == "cyclic" else np.int32)
+    found = np.full(n, usual, bool if name == "cyclic" else np.int32)
     if attribute is not None:
         attribute.data.foreach_get("value", found)
     return found

@@ -4,6 +4,7 @@
 import bpy
 
 from .. import earlier
+from ..translations import rpt_
 
 
 class OBJECT_OT_orbflow_before(bpy.types.Operator):
@@ -18,7 +19,7 @@ class OBJECT_OT_orbflow_before(bpy.types.Operator):
         """Whether there is a before to show."""
         is_there = earlier.may_be(context.object)
         if not is_there:
-            cls.poll_message_set("It has no original, and no run of this session made it")
+            cls.poll_message_set(rpt_("It has no original, and no run of this session made it"))
         return is_there
 
     def execute(self, context: bpy.types.Context) -> set[str]:

@@ -4,8 +4,9 @@
 import bpy
 from bpy.props import EnumProperty, IntProperty
 
-from .. import details, modifiers, originals
+from .. import details, modifiers, originals, words
 from ..details import Detail, Distance
+from ..translations import n_, rpt_
 
 _METHODS = (
     ("MULTIRES", "Multires", "Levels that can be sculpted on; the original may go then"),
@@ -56,11 +57,11 @@ def why_not(context: bpy.types.Context) -> str:
     """Why the active object has no original to take detail from; empty where it has."""
     thing = context.object
     if thing is None or thing.type != "MESH":
-        return "Make a mesh active"
+        return rpt_("Make a mesh active")
     if context.mode != "OBJECT":
-        return "Leave edit, sculpt or paint mode first"
+        return rpt_("Leave edit, sculpt or paint mode first")
     if not thing.is_editable or thing.data.library is not None:
-        return "It is linked from another file and cannot be changed"
+        return rpt_("It is linked from another file and cannot be changed")
     try:
         originals.of(thing)
     except originals.Gone as error:
@@ -69,14 +70,18 @@ def why_not(context: bpy.types.Context) -> str:
 
 
 def _sentence(made: Detail, *, is_other: bool) -> str:
-    levels = f"{made.levels} level{'s' * (made.levels > 1)}, {made.n_faces:,} faces"
-    held = "of Multires" if made.is_multires else "of Subdivision and Shrinkwrap"
-    why = "; Blender makes no Multires here" if is_other else ""
-    return (
-        f"{levels} {held}; mean distance to the original {_told(made.before)} before, "
-        f"{_told(made.after)} now{why}"
+    multires = n_("{:,} level of Multires"), n_("{:,} levels of Multires")
+    others = (
+        n_("{:,} level of Subdivision and Shrinkwrap"),
+        n_("{:,} levels of Subdivision and Shrinkwrap"),
     )
+    levels = words.count(made.levels, *(multires if made.is_multires else others))
+    faces = words.count(made.n_faces, n_("{:,} face"), n_("{:,} faces"))
+    apart = rpt_("mean distance to the original {} before, {} now")
+    told = [f"{levels}, {faces}", apart.format(_told(made.before), _told(made.after))]
+    return "; ".join(told + ([rpt_("Blender makes no Multires here")] if is_other else []))
 
 
 def _told(distance: Distance) -> str:
-    return f"{distance.mean_pct:.3f} % of size (at most {distance.most_pct:.2f} %)"
+    told = rpt_("{:.3f} % of size (at most {:.2f} %)")
+    return told.format(distance.mean_pct, distance.most_pct)

@@ -11,9 +11,9 @@ from bpy_extras import view3d_utils
 from gpu_extras.batch import batch_for_shader
 from mathutils import Vector
 
-from .. import words
 from ..guides import paths, store
 from ..guides.surface import Surface
+from ..translations import n_, rpt_
 
 _COLOUR = (1.0, 0.45, 0.05, 1.0)
 _WIDTH_PX = 3.0
@@ -57,7 +57,7 @@ class OBJECT_OT_orbflow_draw_guide(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         """Whether there is a mesh to draw on."""
         if target(context) is None:
-            cls.poll_message_set("Make a mesh active in object mode: guides are drawn on it")
+            cls.poll_message_set(rpt_("Make a mesh active in object mode: guides are drawn on it"))
             return False
         return True
 
@@ -71,15 +71,16 @@ class OBJECT_OT_orbflow_draw_guide(bpy.types.Operator):
         places = [surface.nearest(inverse @ p) if np.isfinite(p).all() else None for p in given]
         lines = surface.with_images(surface.lines(places, self.is_closed))
         if not lines:
-            self.report({"WARNING"}, f"nothing was drawn on {thing.name}")
+            self.report({"WARNING"}, rpt_("nothing was drawn on {}").format(thing.name))
             return {"CANCELLED"}
         before = context.scene.orbflow.guides
         store.add(store.holder(context, thing), thing, lines, self.is_exact)
-        told = words.count(len(lines), "guide")
+        one, many = n_("{:,} guide drawn on {name}"), n_("{:,} guides drawn on {name}")
+        told = rpt_(many if len(lines) > 1 else one).format(len(lines), name=thing.name)
         now = context.scene.orbflow.guides
         if before not in {"", now}:
-            told += f"; Guides is now {now} instead of {before}"
-        self.report({"INFO"}, f"{told} drawn on {thing.name}")
+            told += "; " + rpt_("Guides is now {} instead of {}").format(now, before)
+        self.report({"INFO"}, told)
         return {"FINISHED"}
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:

@@ -11,6 +11,7 @@ from .. import words
 from ..guides import paths, store
 from ..guides.strokes import Points
 from ..guides.surface import Surface
+from ..translations import n_
 from . import draw_guide
 
 _REACH_PX = 12.0
@@ -98,7 +99,7 @@ class OBJECT_OT_orbflow_erase_guide(bpy.types.Operator):
         return (place - matrix @ hit).dot(ahead) <= _DEPTH * size
 
     def _told(self, n: int) -> set[str]:
-        self.report({"INFO"}, f"{words.count(n, 'guide')} erased")
+        self.report({"INFO"}, words.count(n, n_("{:,} guide erased"), n_("{:,} guides erased")))
         return {"FINISHED"} if n else {"CANCELLED"}
 
 

@@ -4,7 +4,8 @@
 import bpy
 from bpy.props import BoolProperty, IntProperty
 
-from .. import bake, modifiers, originals
+from .. import bake, modifiers, originals, words
+from ..translations import n_, rpt_
 from . import detail
 
 
@@ -45,9 +46,9 @@ class OBJECT_OT_orbflow_bake_normal_map(bpy.types.Operator):
         except (bake.Refused, originals.Gone, modifiers.Refused) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        told = f"{image.name}, {self.image_size:,} × {self.image_size:,} pixels, is packed"
+        told = rpt_("{0}, {1:,} × {1:,} pixels, is packed").format(image.name, self.image_size)
         if self.into_materials:
             n = bake.put_into_materials(thing, image)
-            told += f" and in {n:,} material{'' if n == 1 else 's'}"
+            told += " " + words.count(n, n_("and in {:,} material"), n_("and in {:,} materials"))
         self.report({"INFO"}, told)
         return {"FINISHED"}

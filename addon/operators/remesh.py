@@ -32,6 +32,7 @@ from ..guides.strokes import Stroke
 from ..job import Done, Failed, Job, Outcome, Task, Todo, remesh, running
 from ..outcomes import Told
 from ..stand_in import StandIns, stand_ins
+from ..translations import iface_, rpt_
 
 _TICK_S = 0.05
 
@@ -110,7 +111,7 @@ class OBJECT_OT_orbflow_remesh(bpy.types.Operator, settings.Settings):
     def _end(self, job: Job) -> set[str]:
         if job.is_cancelled:
             editing.enter(self._edited, [])
-            self.report({"INFO"}, "cancelled; nothing was changed")
+            self.report({"INFO"}, rpt_("cancelled; nothing was changed"))
             return {"CANCELLED"}
         return self._finish(job.outcomes)
 
@@ -158,21 +159,21 @@ def _reports(told: list[Told]) -> list[tuple[str, str]]:
     text = words.summary([line.state for line in lines])
     if not noted:
         return [("INFO", text)]
-    last = "WARNING" if is_done else "ERROR", f"{text}; see the panel"
+    last = "WARNING" if is_done else "ERROR", rpt_("{}; see the panel").format(text)
     return [*(("INFO", each) for each in noted), last]
 
 
 def why_not(context: bpy.types.Context) -> str:
     """Why the button is greyed out; empty when it is not."""
     if running:
-        return "Orbflow is at work; press ESC to stop it"
+        return rpt_("Orbflow is at work; press ESC to stop it")
     if context.mode not in {"OBJECT", "EDIT_MESH"}:
-        return "Leave sculpt or paint mode first: Orbflow works in object and edit mode"
+        return rpt_("Leave sculpt or paint mode first: Orbflow works in object and edit mode")
     meshes = [each for each in context.selected_objects if each.type == "MESH"]
     if not meshes:
-        return "Select at least one mesh object"
+        return rpt_("Select at least one mesh object")
     if not any(_is_editable(each) for each in meshes):
-        return "The selected meshes are linked from another file and cannot be changed"
+        return rpt_("The selected meshes are linked from another file and cannot be changed")
     return ""
 
 
@@ -240,9 +241,9 @@ def _sort(
 def _why_left(thing: bpy.types.Object) -> str:
     """Why an object is left as it is; empty when it is not."""
     if not _is_editable(thing):
-        return "it is linked from another file and cannot be changed"
+        return rpt_("it is linked from another file and cannot be changed")
     if _is_being_edited(thing):
-        return "it is not in object mode, in which Orbflow works"
+        return rpt_("it is not in object mode, in which Orbflow works")
     return ""
 
 
@@ -275,7 +276,7 @@ def _replace(outcome: Done, keep_original: bool) -> dict[str, Any] | Failed:
     # A linked object may have the same name.
     things = [bpy.data.objects.get((name, None)) for name in (task.name, *task.others)]
     if not _are_unchanged(things, task):
-        return Failed(task.name, "it was changed meanwhile and is left as it is now")
+        return Failed(task.name, rpt_("it was changed meanwhile and is left as it is now"))
     try:
         result = modifiers.rest_of(outcome.result, applied)
     except modifiers.Refused as error:
@@ -329,4 +330,4 @@ def _draw_status(bar: bpy.types.Header, _context: bpy.types.Context) -> None:
     row = bar.layout.row()
     row.ui_units_x = 20  # Blender cuts the text at the width of a short word otherwise
     row.progress(factor=job.stage.share, text=f"Orbflow: {job.told()}")
-    bar.layout.label(text="Stop", icon="EVENT_ESC")
+    bar.layout.label(text=iface_("Stop"), icon="EVENT_ESC")

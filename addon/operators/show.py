@@ -11,6 +11,7 @@ from mathutils import Vector
 from .. import runs
 from ..job import running
 from ..spots import Complaint, Spot
+from ..translations import rpt_, tip_
 
 # Of the mode of selection: vertices, edges, faces.
 _EDGES, _FACES = (False, True, False), (False, False, True)
@@ -35,7 +36,7 @@ class OBJECT_OT_orbflow_show(bpy.types.Operator):
     def poll(cls, _context: bpy.types.Context) -> bool:
         """Whether meshes may be put into edit mode."""
         if running:
-            cls.poll_message_set("Orbflow is at work; press ESC to stop it")
+            cls.poll_message_set(rpt_("Orbflow is at work; press ESC to stop it"))
         return not running
 
     @classmethod
@@ -43,18 +44,19 @@ class OBJECT_OT_orbflow_show(bpy.types.Operator):
         """The tooltip: the exact words of the reason."""
         complaint = _complaint(runs.local(properties.name), properties.row)
         if complaint is None:
-            return f"Select {properties.name}"
-        return f"Select the spot in edit mode. In exact words: {complaint.exact}"
+            return tip_("Select {}").format(properties.name)
+        told = tip_("Select the spot in edit mode. In exact words: {}")
+        return told.format(complaint.exact)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Makes the object active, and selects the spot of the row in edit mode."""
         thing = runs.local(self.name)
         if thing is None or not thing.visible_get():
-            self.report({"ERROR"}, f"{self.name} is not there or not visible")
+            self.report({"ERROR"}, rpt_("{} is not there or not visible").format(self.name))
             return {"CANCELLED"}
         complaint = _complaint(thing, self.row)
         if self.row >= 0 and (complaint is None or complaint.spot is None):
-            self.report({"ERROR"}, f"{self.name} has changed since")
+            self.report({"ERROR"}, rpt_("{} has changed since").format(self.name))
             return {"CANCELLED"}
         _activate(context, thing)
         if complaint and complaint.spot:

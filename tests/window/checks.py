@@ -182,6 +182,48 @@ def marks() -> Waits:
         assert scene.n_changed(before, hand.of_view(hand.picture())) < 100, name
 
 
+def selected_faces() -> Waits:
+    """In edit mode the selected half alone is done; the other stays, and undo takes all back."""
+    yield from scene.start_with(scene.ball)
+    before = scene.state("Ball")
+    with scene.in_view():
+        bpy.ops.object.mode_set(mode="EDIT")
+        scene.select_above()
+    bpy.ops.ed.undo_push(message="selection")
+    yield 0.5
+    yield from hand.push(r"orbflow_remesh\(")
+    yield from scene.until_done()
+    assert bpy.context.mode == "EDIT_MESH"
+    hand.picture(scene.OUT / "selected_half.png")
+    n_selected, n_all = scene.n_faces_selected()
+    assert 540 <= n_selected <= 660, n_selected
+    assert n_all - n_selected == before.n_faces // 2, (n_selected, n_all)
+    yield from hand.undo()
+    assert scene.n_faces_selected() == (before.n_faces // 2, before.n_faces)
+
+
+def languages() -> Waits:
+    """The panel, its tooltips and what is told of a run are in Blender's language."""
+    told = {"de_DE": "4,096 Flächen wurden ", "fr_FR": "4,096 faces sont devenues "}
+    shown = []
+    for language, text in told.items():
+        yield from scene.start_with(scene.ball)
+        scene.speak(language)
+        yield 1.0
+        yield from hand.push(r"orbflow_remesh\(")
+        yield from scene.until_done()
+        said = scene.told_last()
+        yield from scene.open_section(3, "keep_faces")
+        yield from hand.move(hand.middle(up=0.1))
+        yield 0.5
+        shown.append(hand.picture(scene.OUT / f"panel_{language}.png"))
+        scene.speak("en_US")
+        yield 0.5
+        yield from scene.click_title(3)
+        assert said.startswith(text), said
+    assert scene.n_changed(*shown) > 1000
+
+
 CHECKS = {
     each.__name__: each
     for each in (
@@ -194,5 +236,7 @@ CHECKS = {
         guides,
         before_and_after,
         marks,
+        selected_faces,
+        languages,
     )
 }

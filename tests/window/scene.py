@@ -8,6 +8,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import bmesh
 import bpy
 import hand
 import numpy as np
@@ -169,16 +170,47 @@ def strokes() -> list[bool]:
     return [spline.use_cyclic_u for each in curves for spline in each.data.splines]
 
 
+def select_above() -> None:
+    """Selects the faces of the upper half of what is edited."""
+    mesh = bpy.context.object.data
+    shape = bmesh.from_edit_mesh(mesh)
+    for face in shape.faces:
+        face.select_set(False)
+    for face in shape.faces:
+        if face.calc_center_median().z > 0:
+            face.select_set(True)
+    bmesh.update_edit_mesh(mesh)
+
+
+def n_faces_selected() -> tuple[int, int]:
+    """How many faces of what is edited are selected, and how many there are."""
+    faces = bmesh.from_edit_mesh(bpy.context.object.data).faces
+    return sum(each.select for each in faces), len(faces)
+
+
+def speak(language: str) -> None:
+    """Sets Blender's language, for all that it says."""
+    view = bpy.context.preferences.view
+    view.language = language
+    for each in ("interface", "tooltips", "reports"):
+        setattr(view, f"use_translate_{each}", True)
+
+
+def click_title(at: int) -> Waits:
+    """Clicks on the title of a section, which opens or closes it."""
+    found: list[hand.Button] = []
+    yield from hand.buttons(found, wanted=r"orbflow\.faces$")
+    below = found[-1].place.y - _TO_TITLES_PX - at * _TITLE_PX
+    yield from hand.click(hand.Place(hand.region("UI").x + 80, below))
+
+
 def open_section(at: int, setting: str) -> Waits:
     """Opens a section of the panel by a click on its title; one of its settings is looked for.
 
     Titles lie below each other, under the row that says how many faces there are.
     """
+    yield from click_title(at)
     found: list[hand.Button] = []
-    yield from hand.buttons(found, wanted=r"orbflow\.faces$")
-    below = found[-1].place.y - _TO_TITLES_PX - at * _TITLE_PX
-    yield from hand.click(hand.Place(hand.region("UI").x + 80, below))
-    found = []
     yield from hand.buttons(found, wanted=rf"orbflow\.{setting}$")
     assert found[-1].name.endswith(f"orbflow.{setting}"), f"section {at} has no {setting}"
 
