@@ -73,8 +73,8 @@ class Settings:
     own_quads: BoolProperty(
         name="Own Quads",
         description=(
-            "Cut the mesh's own quads into finer ones where they are coarser than asked for and "
-            "good ones come of it: its loops stay. Off: new quads are found"
+            "Keep the mesh's own quads where they are good, cut into finer ones or without some "
+            "strips: its loops stay. Off: new quads are found"
         ),
         default=True,
     )

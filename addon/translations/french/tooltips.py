@@ -67,12 +67,11 @@ WORDS = {
         "Ferme les fentes entre des arêtes ouvertes superposées, comme les coutures importées"
     ),
     (
-        "Cut the mesh's own quads into finer ones where they are coarser than asked for and "
-        "good ones come of it: its loops stay. Off: new quads are found"
+        "Keep the mesh's own quads where they are good, cut into finer ones or without some "
+        "strips: its loops stay. Off: new quads are found"
     ): (
-        "Découpe les quads du maillage en quads plus fins là où ils sont plus grossiers que "
-        "demandé et où le résultat est bon : ses boucles restent. Sans : de nouveaux quads "
-        "sont cherchés"
+        "Garde les quads du maillage là où ils sont bons, découpés plus finement ou sans "
+        "certaines bandes : ses boucles restent. Sans : de nouveaux quads sont cherchés"
     ),
     "Cycles, which bakes, is switched off in the preferences": (
         "Cycles, qui précalcule, est désactivé dans les préférences"

@@ -67,11 +67,11 @@ WORDS = {
         "importierten Nähten"
     ),
     (
-        "Cut the mesh's own quads into finer ones where they are coarser than asked for and "
-        "good ones come of it: its loops stay. Off: new quads are found"
+        "Keep the mesh's own quads where they are good, cut into finer ones or without some "
+        "strips: its loops stay. Off: new quads are found"
     ): (
-        "Zerlegt die eigenen Quads des Netzes in feinere, wo sie gröber sind als verlangt und "
-        "gute daraus werden: seine Schleifen bleiben. Aus: neue Quads werden gesucht"
+        "Behält die eigenen Quads des Netzes, wo sie gut sind, feiner zerlegt oder ohne "
+        "einige Streifen: seine Schleifen bleiben. Aus: neue Quads werden gesucht"
     ),
     "Cycles, which bakes, is switched off in the preferences": (
         "Cycles, das zum Backen gebraucht wird, ist in den Einstellungen ausgeschaltet"
