@@ -112,8 +112,18 @@ fn run(guidance: &dyn GuidancePredictor, guides: &[Stroke]) -> Remeshed {
 #[test]
 fn every_predictor_keeps_the_promises() {
     for (name, mesh) in shapes() {
-        assert_eq!(check(&mesh, &NoGuidance), Some(Guidance::default()), "{name}");
-        let guidance = check(&mesh, &Ring { height: 0.1, density: true });
+        assert_eq!(
+            check(&mesh, &NoGuidance),
+            Some(Guidance::default()),
+            "{name}"
+        );
+        let guidance = check(
+            &mesh,
+            &Ring {
+                height: 0.1,
+                density: true,
+            },
+        );
         assert_eq!(guidance.map(|g| g.strokes.len()), Some(1), "{name}");
         assert_eq!(check(&mesh, &Unable), None, "{name}");
     }
@@ -162,7 +172,9 @@ fn nobody_and_somebody_who_is_no_use_change_nothing() {
         ),
     ];
     let bad = bad.map(|(propose, why)| (Bad(propose), why));
-    let each = bad.iter().map(|(bad, why)| (bad as &dyn GuidancePredictor, *why));
+    let each = bad
+        .iter()
+        .map(|(bad, why)| (bad as &dyn GuidancePredictor, *why));
     for (predictor, why) in each.chain([(&Unable as &dyn GuidancePredictor, "no weights")]) {
         let made = run(predictor, &[]);
         assert_eq!(made.mesh, plain.mesh, "{why}");
@@ -175,14 +187,26 @@ fn nobody_and_somebody_who_is_no_use_change_nothing() {
 
 #[test]
 fn a_proposed_ring_is_laid_and_told_of_as_proposed() {
-    let made = run(&Ring { height: 0.1, density: false }, &[]);
+    let made = run(
+        &Ring {
+            height: 0.1,
+            density: false,
+        },
+        &[],
+    );
     let [guide] = &made.report.guides[..] else {
         panic!("{:?}", made.report.guides);
     };
-    assert!(guide.is_proposed && guide.outcome == GuideOutcome::Laid, "{guide:?}");
+    assert!(
+        guide.is_proposed && guide.outcome == GuideOutcome::Laid,
+        "{guide:?}"
+    );
     let asked = made.report.guidance.expect("somebody was asked");
     assert_eq!((asked.parts.len(), asked.parts[0].n_strokes), (1, 1));
-    let recognised = asked.parts[0].recognised.clone().expect("it was taken for one");
+    let recognised = asked.parts[0]
+        .recognised
+        .clone()
+        .expect("it was taken for one");
     assert_eq!(recognised.kind, "rod");
 }
 
@@ -196,7 +220,13 @@ fn what_the_artist_drew_stays_alone_in_its_place() {
         for p in &mut drawn.points {
             *p = *p * diagonal + centre;
         }
-        let made = run(&Ring { height: 0.1, density: false }, &[drawn]);
+        let made = run(
+            &Ring {
+                height: 0.1,
+                density: false,
+            },
+            &[drawn],
+        );
         let proposed: Vec<bool> = made.report.guides.iter().map(|g| g.is_proposed).collect();
         assert_eq!(proposed, [false, true][..n_wanted], "{height}");
     }
@@ -209,7 +239,13 @@ fn quads_are_smaller_where_a_density_is_proposed() {
         places.filter(|p| p.z > 1.5).count()
     };
     let plain = above(&run(&NoGuidance, &[]));
-    let denser = above(&run(&Ring { height: -0.2, density: true }, &[]));
+    let denser = above(&run(
+        &Ring {
+            height: -0.2,
+            density: true,
+        },
+        &[],
+    ));
     assert!(denser as f64 > 1.3 * plain as f64, "{plain} {denser}");
 }
 
