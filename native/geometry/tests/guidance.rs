@@ -61,6 +61,9 @@ impl GuidancePredictor for Ring {
 #[derive(Debug)]
 struct Bad(fn(&TriangleMesh) -> Guidance);
 
+/// A proposal, and what is said of it.
+type Useless = (fn(&TriangleMesh) -> Guidance, &'static str);
+
 impl GuidancePredictor for Bad {
     fn name(&self) -> &'static str {
         "bad"
@@ -133,7 +136,7 @@ fn every_predictor_keeps_the_promises() {
 fn nobody_and_somebody_who_is_no_use_change_nothing() {
     let plain = run(&NoGuidance, &[]);
     assert_eq!(plain.report.guidance, None);
-    let bad: [(fn(&TriangleMesh) -> Guidance, &str); 4] = [
+    let bad: [Useless; 4] = [
         (
             |mesh| Guidance {
                 density: Some(VertexMap::filled(mesh.n_vertices() + 1, 0.5)),
