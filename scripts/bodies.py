@@ -3,7 +3,7 @@
 Each is MakeHuman's closed base mesh with a random build, height and details, all CC0. Bodies of one
 ancestry, sex and age share a name but for its number: `orbflow prepare` keeps such files on one
 side, so that a held-back body is of a kind that training saw none of. Body i is the same whatever
-else is made.
+else is made. With `--poses DATA/poses` two of three bodies of a kind are bent, one of them mildly.
 """
 
 import argparse
@@ -12,6 +12,9 @@ import tarfile
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
+from poses import Rig
+
 # Folders of details that change the outline; faces are too small to matter.
 PLACES = ("arms", "feet", "hands", "head", "hip", "legs", "neck", "pelvis", "stomach", "torso")
 # How the names of details end that exclude each other.
@@ -19,6 +22,8 @@ ENDS = ("-incr", "-decr", "-up", "-down", "-in", "-out", "-forward", "-backward"
 ANCESTRIES = ("african", "asian", "caucasian")
 SEXES = ("female", "male")
 AGES = ("baby", "child", "old", "young")
+# How far limbs of the bodies of a kind turn, in turn.
+BENT = (0.0, 1.0, 0.4)
 Vertex = tuple[float, float, float]
 Target = list[tuple[int, Vertex]]
 
@@ -91,8 +96,8 @@ def weights(
     return chosen
 
 
-def bodies(folder: Path, most: int) -> Iterator[tuple[str, str]]:
-    """The names of OBJ files and their texts."""
+def bodies(folder: Path, most: int, rig: Rig | None = None) -> Iterator[tuple[str, str]]:
+    """The names of OBJ files and their texts; bent by a rig, if there is one."""
     vertices, faces = read_base(folder / "body.obj")
     targets = read_targets(folder / "targets.tar.xz", len(vertices))
     names = sorted(targets)
@@ -106,6 +111,9 @@ def bodies(folder: Path, most: int) -> Iterator[tuple[str, str]]:
             for index, move in targets[name]:
                 for axis in range(3):
                     moved[index][axis] += weight * move[axis]
+        bent = BENT[i // len(kinds) % len(BENT)]
+        if rig is not None and bent > 0:
+            moved = rig.posed(np.array(moved), chance, bent).tolist()
         lines = [f"v {x:.6f} {y:.6f} {z:.6f}" for x, y, z in moved]
         yield f"{kind}_{i // len(kinds):03}.obj", "\n".join([*lines, *faces, ""])
 
@@ -116,10 +124,12 @@ def main() -> None:
     parser.add_argument("makehuman", type=Path)
     parser.add_argument("out", type=Path)
     parser.add_argument("--most", type=int, required=True)
+    parser.add_argument("--poses", type=Path)
     arguments = parser.parse_args()
+    rig = Rig(arguments.poses) if arguments.poses else None
     arguments.out.mkdir(parents=True, exist_ok=True)
     table = ["file,licence"]
-    for name, text in bodies(arguments.makehuman, arguments.most):
+    for name, text in bodies(arguments.makehuman, arguments.most, rig):
         (arguments.out / name).write_text(text)
         table.append(f"{name},CC0-1.0")
     (arguments.out / "licences.csv").write_text("\n".join([*table, ""]))

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use numpy::{PyArray1, PyArray2, PyArray3};
+use orbflow_geometry::guidance::NoGuidance;
 use orbflow_geometry::guidance::Stroke;
 use orbflow_geometry::mesh::VertexId;
 use orbflow_geometry::pipeline::{self, Borders, Handles, Input, Settings, Style};
@@ -199,6 +200,7 @@ pub fn remesh<'py>(
         cuts: cuts.as_deref(),
         guides: &guides,
         keep_faces: keep.as_deref(),
+        guidance: &NoGuidance,
     };
     let job = Job::new(progress, cancel).scaled(scale);
     let mut remeshed = job.run(py, |progress| {

@@ -8,14 +8,21 @@
 //!
 //! Strokes that cross get a vertex there; borders are not crossed. Where the way from one point of a
 //! stroke to the next is not found on the mesh, as round a fold, the stroke has a gap.
+//!
+//! A [`GuidancePredictor`] proposes strokes, and how dense quads are to be; [`NoGuidance`] proposes
+//! nothing.
 
 mod draw;
+mod predict;
 mod splitting;
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 pub use draw::{Drawn, Pen, draw};
+pub use predict::{
+    BadGuidance, Guidance, GuidanceError, GuidancePredictor, NoGuidance, Recognised,
+};
 
 /// How strictly edges keep to a stroke.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug, Serialize, Deserialize)]

@@ -33,6 +33,16 @@ impl Density {
         Self(values)
     }
 
+    /// The same, larger where others are larger, by their places in the frame of work.
+    #[must_use]
+    pub fn raised(mut self, others: impl Iterator<Item = (DVec3, f64)>) -> Self {
+        for (place, value) in others {
+            let most = self.0.entry(bits(place)).or_insert(value);
+            *most = value.max(*most);
+        }
+        self
+    }
+
     /// Values at places in the frame of work.
     pub fn at(values: impl Iterator<Item = (DVec3, f64)>) -> Self {
         Self(values.map(|(place, value)| (bits(place), value)).collect())

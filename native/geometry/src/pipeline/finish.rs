@@ -7,6 +7,7 @@ use super::frame::Prepared;
 use super::join::Joined;
 use super::mirror::Plane;
 use super::origins::origins;
+use super::proposed::Asked;
 use super::region::Region;
 use super::scored::{Judged, judge, sound};
 use super::split::Parts;
@@ -30,6 +31,8 @@ pub struct Made<'a> {
     pub plane: Option<Plane>,
     pub joined: Joined,
     pub strokes: Strokes,
+    /// What somebody proposed beside them.
+    pub asked: Option<Asked>,
     /// What is kept, if anything is.
     pub region: Option<&'a Region>,
 }
@@ -98,6 +101,7 @@ impl Made<'_> {
             rejoined: self.joined.rejoined,
             kept_faces: self.joined.kept_faces,
             guides,
+            guidance: self.asked,
             score: judged.score,
             score_refused: judged.refused,
             warnings: judged.warnings,

@@ -46,6 +46,7 @@ mod own;
 mod paired;
 mod part;
 mod probe;
+mod proposed;
 mod reduce;
 mod region;
 mod report;
@@ -80,6 +81,7 @@ pub use kept::{Flaw, Kept, Outcome, Reason};
 pub use laid::Instead;
 pub use mirror::{Mirror, Plane, Through};
 pub use origins::{Origin, Origins};
+pub use proposed::{Asked, Proposed};
 pub use region::KeptFaces;
 pub use report::{Mirrored, PartReport, Reduced, Rejoined, Report};
 pub use scored::score;
@@ -95,7 +97,7 @@ use glam::DVec3;
 use crate::clean;
 use crate::clean::Apart;
 use crate::embed::OffsetPredictor;
-use crate::guidance::Stroke;
+use crate::guidance::{GuidancePredictor, NoGuidance, Stroke};
 use crate::mesh::{FaceId, PolygonMesh, VertexId};
 use crate::progress::Progress;
 use clock::Clock;
@@ -104,6 +106,7 @@ use each::Common;
 use finish::Made;
 use frame::Prepared;
 use marks::Marks;
+use proposed::Proposals;
 use region::Region;
 use split::Parts;
 use strokes::Strokes;
@@ -138,6 +141,8 @@ pub struct Input<'a> {
     /// Which of its faces are kept as they are; the new ones join them without a gap. Those that are
     /// kept are among the faces asked for.
     pub keep_faces: Option<&'a [bool]>,
+    /// Who proposes strokes and a density for each part that quads flow on, beside these.
+    pub guidance: &'a dyn GuidancePredictor,
 }
 
 impl<'a> Input<'a> {
@@ -153,6 +158,7 @@ impl<'a> Input<'a> {
             cuts: None,
             guides: &[],
             keep_faces: None,
+            guidance: &NoGuidance,
         }
     }
 }
@@ -252,7 +258,9 @@ fn shells(
         _ => (plane, None),
     };
     let line = region.map(|region| region.marks(mesh, &prepared.frame));
-    let drawn = || Strokes::new(&input, &prepared, (plane, settings), &stage);
+    let ask = || Proposals::ask(&input, &prepared, settings, &stage);
+    let proposals = clock.step("clean", ask)?;
+    let drawn = || Strokes::new((&input, &proposals), &prepared, (plane, settings), &stage);
     let strokes = clock.step("clean", drawn)?;
     let laid = meet::laid(&marked, &parts);
     let common = Common {
@@ -260,7 +268,7 @@ fn shells(
         marks: &Marks::new((mesh, &laid), &prepared.frame),
         sides: &own::sides(&prepared, mesh, settings),
         line: &line.unwrap_or_default(),
-        density: &Density::new(&input, &prepared.frame),
+        density: &proposals.raised(Density::new(&input, &prepared.frame)),
         reduced: given
             .reduced
             .filter(|_| parts.kept.is_empty() && region.is_none()),
@@ -284,6 +292,7 @@ fn shells(
         plane,
         joined,
         strokes,
+        asked: proposals.asked,
         region,
     };
     made.finished(clock, progress)

@@ -8,6 +8,7 @@ use super::clock::Step;
 use super::flowed::Flowed;
 use super::kept::Kept;
 use super::mirror::Plane;
+use super::proposed::Asked;
 use super::region::KeptFaces;
 use super::settings::Settings;
 use super::solid::Solid;
@@ -48,6 +49,9 @@ pub struct Report {
     pub kept_faces: Option<KeptFaces>,
     /// What became of strokes, in their order.
     pub guides: Vec<GuideReport>,
+    /// Who was asked for guidance, and what came of it; none where nobody was.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub guidance: Option<Asked>,
     /// How good the result is; none when it was not asked for or could not be measured.
     pub score: Option<Score>,
     /// Why it could not be measured.

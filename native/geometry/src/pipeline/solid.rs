@@ -108,6 +108,7 @@ pub fn run(
         cuts: None,
         guides: given.guides,
         keep_faces: None,
+        guidance: given.guidance,
     };
     let stage = progress.part("", 0.1, 0.97);
     let made = shells((inner, None, clock), settings, predictor, &stage);

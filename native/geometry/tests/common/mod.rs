@@ -4,6 +4,7 @@
 pub mod closing;
 pub mod conformance;
 pub mod edits;
+pub mod guided;
 
 use glam::{DMat3, DVec3};
 use orbflow_geometry::elementary::{cos, exp, sin, sin_cos};

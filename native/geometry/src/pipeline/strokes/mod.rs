@@ -13,6 +13,7 @@ use glam::DVec3;
 
 use super::frame::Prepared;
 use super::mirror::Plane;
+use super::proposed::Proposals;
 use super::settings::Primitive;
 use super::{Error, Input, Settings};
 use crate::guidance::{Strength, Stroke};
@@ -30,8 +31,10 @@ const N_LOOKS: f64 = 500.0;
 
 /// The strokes of a run, in the frame of work.
 pub struct Strokes {
-    /// As they came.
+    /// As they came, those that somebody proposed last.
     given: Vec<Stroke>,
+    /// How many of them the artist drew.
+    n_drawn: usize,
     /// Of those that are not drawn, how far off they are.
     far: Vec<Option<f64>>,
     /// What is drawn, on both sides of a plane of symmetry.
@@ -47,12 +50,12 @@ pub struct Strokes {
 pub struct OnPart<'a>(Option<(&'a Strokes, u32)>);
 
 impl Strokes {
-    /// Those of the input.
+    /// Those of the input, and those that were proposed and are not drawn already.
     ///
     /// # Errors
     /// When cancelled.
     pub fn new(
-        input: &Input<'_>,
+        (input, proposals): (&Input<'_>, &Proposals),
         prepared: &Prepared,
         (plane, settings): (Option<Plane>, &Settings),
         progress: &Progress<'_>,
@@ -61,10 +64,13 @@ impl Strokes {
             points: prepared.frame.enter(&stroke.points),
             ..*stroke
         };
-        let given: Vec<Stroke> = input.guides.iter().map(enter).collect();
+        let mut given: Vec<Stroke> = input.guides.iter().map(enter).collect();
+        let n_drawn = given.len();
+        given.extend(proposals.beside(&given));
         if given.is_empty() {
             return Ok(Self {
                 given,
+                n_drawn,
                 far: Vec::new(),
                 drawn: Vec::new(),
                 surface: None,
@@ -93,6 +99,7 @@ impl Strokes {
         }
         Ok(Self {
             given,
+            n_drawn,
             far,
             drawn,
             surface: Some((tree, parts)),

@@ -47,6 +47,15 @@ pub struct GuideReport {
     pub angle: Option<f64>,
     /// Why it is lost.
     pub text: Option<String>,
+    /// Whether it was not drawn but proposed.
+    #[serde(skip_serializing_if = "is_drawn")]
+    pub is_proposed: bool,
+}
+
+/// Reports of strokes that were drawn do not speak of proposals.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands it over so")]
+fn is_drawn(is_proposed: &bool) -> bool {
+    !is_proposed
 }
 
 impl Strokes {
@@ -70,7 +79,12 @@ impl Strokes {
                 Some(_) => Seen::default(),
                 None => faces.seen(stroke, surface),
             };
-            Ok(report((guide, stroke.strength), *far, &seen))
+            let report = report((guide, stroke.strength), *far, &seen);
+            let is_proposed = guide >= self.n_drawn;
+            Ok(GuideReport {
+                is_proposed,
+                ..report
+            })
         });
         told.collect()
     }
@@ -103,6 +117,7 @@ fn report((guide, strength): (usize, Strength), far: Option<f64>, seen: &Seen) -
         distance: seen.mean,
         angle: seen.angle,
         text,
+        is_proposed: false,
     }
 }
 
@@ -110,6 +125,7 @@ impl GuideReport {
     /// What is wrong with a stroke that was to be met, or was not drawn.
     pub(in crate::pipeline) fn fault(&self) -> Option<Fault> {
         let is_wrong = self.strength == Strength::Exact || self.angle.is_none();
+        let is_wrong = is_wrong && !self.is_proposed;
         let reason = self.text.clone().filter(|_| is_wrong)?;
         let guide = self.guide;
         Some(Fault::Guide { guide, reason })
