@@ -38,6 +38,9 @@ pub struct Common<'a> {
 
 /// Of more parts each has to be quick.
 const MANY: usize = 32;
+/// All parts together may have one face more for so many where shapes take more: beyond one in 20 a
+/// warning would say so.
+const FACES_PER_SPARE: usize = 25;
 
 /// What became of every part, or why its run failed.
 pub struct Each(Vec<Result<PartResult, String>>);
@@ -67,6 +70,11 @@ impl Common<'_> {
             progress,
             done: 0,
             are_many: parts.len() > MANY,
+            n_spare: if parts.len() > 1 {
+                settings.faces / FACES_PER_SPARE
+            } else {
+                0
+            },
         };
         let mut made = Vec::with_capacity(parts.len());
         let mut images = Vec::new();
@@ -99,6 +107,8 @@ struct Work<'a, 'b> {
     /// How many triangles are done.
     done: usize,
     are_many: bool,
+    /// How many faces more parts may still have.
+    n_spare: usize,
 }
 
 impl Work<'_, '_> {
@@ -130,12 +140,17 @@ impl Work<'_, '_> {
                 strokes: common.strokes.on_part(at),
                 has_tubes: false,
                 is_one_of_many: self.are_many,
+                n_spare: self.n_spare,
             },
         };
         match job.run(self.clock, &progress) {
             Err(error) if error.is_cancelled() => Err(error),
             Err(error) => Ok(Err(error.to_string())),
-            Ok(made) => Ok(Ok(made)),
+            Ok(made) => {
+                let n_more = made.report.n_faces.saturating_sub(n_faces);
+                self.n_spare = self.n_spare.saturating_sub(n_more);
+                Ok(Ok(made))
+            }
         }
     }
 }
