@@ -333,7 +333,7 @@ mod tests {
         let settings = Settings::new(400);
         let found = flow(&map, guides(&marked), &settings, &Progress::none()).unwrap();
         let n_before = found.mesh.n_faces();
-        let thinned = found.clone().thinned(200, 0).unwrap();
+        let thinned = found.clone().thinned(200).unwrap();
         let n = thinned.mesh.n_faces();
         assert!(n.abs_diff(200) <= 4, "{n}");
         assert_eq!(
@@ -342,7 +342,7 @@ mod tests {
         );
         assert_eq!(thinned.report.n_thinned, n_before - n);
         assert_eq!(thinned.sphere.len(), n + 2);
-        let error = found.thinned(3, 0).unwrap_err();
+        let error = found.thinned(3).unwrap_err();
         assert!(matches!(error, Error::Count { n_wanted: 3, .. }), "{error}");
     }
 

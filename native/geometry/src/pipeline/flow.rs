@@ -42,8 +42,6 @@ pub struct Asked<'a> {
     pub strokes: OnPart<'a>,
     /// Which of its borders need no lines.
     pub loose: Loose,
-    /// How many quads more there may be where strips of them are taken out and more cannot be.
-    pub n_spare: usize,
 }
 
 impl Asked<'_> {

@@ -278,7 +278,6 @@ mod tests {
             strokes: crate::pipeline::strokes::OnPart::none(),
             has_tubes: false,
             is_one_of_many: false,
-            n_spare: 0,
         };
         let quiet = Progress::none();
         let map = embed_mesh(mesh.clone(), wanted.predictor, &quiet).unwrap();

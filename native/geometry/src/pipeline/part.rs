@@ -55,8 +55,6 @@ pub struct Wanted<'a> {
     pub has_tubes: bool,
     /// Whether there are so many parts that each has to be quick.
     pub is_one_of_many: bool,
-    /// How many faces more it may have where its shape takes more.
-    pub n_spare: usize,
 }
 
 /// What has become of a part.
@@ -246,7 +244,6 @@ impl Wanted<'_> {
             opening: ground.opening.as_ref(),
             strokes: self.strokes,
             loose: Loose::Nothing,
-            n_spare: self.n_spare,
         };
         let part = progress.part("", 0.0, 0.9);
         match ways::flow_part(&start.1, &ground.target, wanted, clock, &part)? {

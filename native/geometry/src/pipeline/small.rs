@@ -46,8 +46,8 @@ impl SmallParts {
 pub struct Beside {
     /// How many there are.
     pub n_faces: usize,
-    /// How many faces fewer are asked of the other parts: no more than every other one, so that
-    /// specks leave the model its shape.
+    /// How many faces fewer are asked of the other parts: no more than every third one, so that
+    /// small parts leave the others their shape.
     pub n_less: usize,
 }
 
@@ -55,7 +55,7 @@ impl Beside {
     pub fn new(kept: &[Kept], settings: &Settings) -> Self {
         let stays = |kept: &&Kept| kept.is_small() && kept.outcome == Outcome::Kept;
         let n_faces = kept.iter().filter(stays).map(|kept| kept.n_faces).sum();
-        let most = settings.faces - settings.faces.div_ceil(2).max(MIN_FACES);
+        let most = settings.faces - (2 * settings.faces).div_ceil(3).max(MIN_FACES);
         let n_less = usize::min(n_faces, most);
         Self { n_faces, n_less }
     }

@@ -180,7 +180,6 @@ mod tests {
                         strokes: crate::pipeline::strokes::OnPart::none(),
                         has_tubes: false,
                         is_one_of_many: false,
-                        n_spare: 0,
                     };
                     let whole =
                         Whole::new(mesh.clone(), (&settings, n_faces), (&marks, &marks), &quiet)

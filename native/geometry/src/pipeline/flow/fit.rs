@@ -179,7 +179,7 @@ impl Ground<'_> {
         let part = progress.part("", 0.0, 0.95);
         let mut flow = flow::flow(&surface.even, surface.guides(firm), settings, &part)?;
         if settings.may_exceed {
-            flow = flow.thinned(self.asked.n_quads, self.asked.n_spare)?;
+            flow = flow.thinned(self.asked.n_quads)?;
         }
         let part = progress.part("", 0.95, 1.0);
         let covered = embed::cover(&flow.mesh, &flow.sphere, &part)?;
