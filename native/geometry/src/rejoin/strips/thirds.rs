@@ -59,9 +59,10 @@ impl Leveling {
             let n_sides = if chain.is_border { 1 } else { 2 };
             let n_edges = most - chain.vertices.len();
             // Three quads more for two edges, or a triangle for one.
-            match self.are_quads[chain.sheet] {
-                true => n_edges.div_ceil(2) * 3 * n_sides,
-                false => n_edges * n_sides,
+            if self.are_quads[chain.sheet] {
+                n_edges.div_ceil(2) * 3 * n_sides
+            } else {
+                n_edges * n_sides
             }
         };
         chains.iter().map(more).sum()
