@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use super::clock::Clock;
 use super::density::Density;
+use super::flowed::Flowed;
 use super::frame::Prepared;
 use super::join::{self, Joined};
 use super::marks::Marks;
@@ -12,7 +13,7 @@ use super::mirror::{self, Plane, Role};
 use super::own;
 use super::part::{PartJob, PartResult, Wanted};
 use super::region::Region;
-use super::report::Mirrored;
+use super::report::{Mirrored, PartReport};
 use super::shares::share;
 use super::split::{Parts, components};
 use super::strokes::Strokes;
@@ -41,6 +42,9 @@ pub struct Common<'a> {
 
 /// Of more parts each has to be quick.
 const MANY: usize = 32;
+/// All parts together may have one face more for so many, where shapes take more: beyond one in 20
+/// a warning would say so.
+const FACES_PER_SPARE: usize = 25;
 
 /// What became of every part, or why its run failed.
 pub struct Each(Vec<Result<PartResult, String>>);
@@ -71,6 +75,10 @@ impl Common<'_> {
             progress,
             done: 0,
             are_many: parts.len() > MANY,
+            n_spare: match parts.len() {
+                1 => 0,
+                _ => settings.faces / FACES_PER_SPARE,
+            },
         };
         let mut made = Vec::with_capacity(parts.len());
         let mut images = Vec::new();
@@ -123,10 +131,32 @@ struct Work<'a, 'b> {
     /// How many triangles are done.
     done: usize,
     are_many: bool,
+    /// How many faces more parts may still have.
+    n_spare: usize,
 }
 
 impl Work<'_, '_> {
+    /// Runs a part, once more with twice as many faces where its shape takes more than few.
     fn run(
+        &mut self,
+        (at, part): (usize, TriangleMesh),
+        n_faces: usize,
+        role: &Role,
+    ) -> Result<Result<PartResult, String>, Error> {
+        let again = (n_faces <= self.n_spare).then(|| part.clone());
+        let made = self.run_once((at, part), n_faces, role)?;
+        let is_refused = |made: &PartResult| made.report.is_refused();
+        let Some(part) = again.filter(|_| made.as_ref().is_ok_and(is_refused)) else {
+            return Ok(made);
+        };
+        self.n_spare -= n_faces;
+        self.done -= part.n_faces();
+        let more = self.run_once((at, part), 2 * n_faces, role)?;
+        let is_it = more.as_ref().is_ok_and(|more| !is_refused(more));
+        Ok(if is_it { more } else { made })
+    }
+
+    fn run_once(
         &mut self,
         (at, part): (usize, TriangleMesh),
         n_faces: usize,
@@ -212,6 +242,13 @@ impl Each {
             let mut left = is_left.iter();
             made.retain(|_| left.next() == Some(&true));
         }
+    }
+}
+
+impl PartReport {
+    /// Whether quads were to flow and do not.
+    fn is_refused(&self) -> bool {
+        matches!(self.flow, Some(Flowed::Refused { .. }))
     }
 }
 

@@ -245,6 +245,7 @@ fn shells(
     let input = Input { mesh, ..given };
     let sort = || Parts::new(&input, (apart, region), settings, &stage);
     let (mut parts, cleaned) = clock.step("split", sort)?;
+    let settings = &parts.staying_small.settings(settings);
     let marked = parts.marked_on_done(&input);
     let input = Input {
         marked: &marked,

@@ -107,6 +107,7 @@ impl Judging<'_> {
             lost_marks: self.lost_marks(progress)?,
             rejoined: self.joined.rejoined,
             kept_faces: self.joined.kept_faces,
+            staying_small: self.parts.staying_small,
         };
         judged.warnings = warnings(&made, settings, progress)?;
         Ok(judged)

@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::frame::Frame;
-use super::kept::{Flaw, Outcome, Reason};
+use super::kept::{Flaw, Kept, Outcome, Reason};
 use super::split::Part;
-use super::{Error, Settings, own};
+use super::{Error, MIN_FACES, Settings, own};
 use crate::mesh::{FaceId, PolygonMesh, VertexId, bounds};
 
 /// A part that is at least this share of the largest is never small: where a mesh has many equal
@@ -37,6 +37,34 @@ impl SmallParts {
         match self {
             Self::Keep => Outcome::Kept,
             Self::Drop => Outcome::Dropped,
+        }
+    }
+}
+
+/// The faces of small parts that stay. They are among those asked for.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct Beside {
+    /// How many there are.
+    pub n_faces: usize,
+    /// How many faces fewer are asked of the other parts: no more than every third one, so that
+    /// small parts leave the others their shape.
+    pub n_less: usize,
+}
+
+impl Beside {
+    pub fn new(kept: &[Kept], settings: &Settings) -> Self {
+        let stays = |kept: &&Kept| kept.is_small() && kept.outcome == Outcome::Kept;
+        let n_faces = kept.iter().filter(stays).map(|kept| kept.n_faces).sum();
+        let most = settings.faces - (2 * settings.faces).div_ceil(3).max(MIN_FACES);
+        let n_less = usize::min(n_faces, most);
+        Self { n_faces, n_less }
+    }
+
+    /// What is asked of the others.
+    pub fn settings(self, settings: &Settings) -> Settings {
+        Settings {
+            faces: settings.faces - self.n_less,
+            ..settings.clone()
         }
     }
 }

@@ -11,6 +11,7 @@ use super::density::Density;
 use super::frame::{Frame, bits};
 use super::kept::{Flaw, Kept, Outcome, Reason};
 use super::region::Region;
+use super::small::Beside;
 use super::stay::some_faces;
 use super::{Error, Inner, Input, Settings, diagnosis, inner, small};
 use crate::clean::{Apart, Cleaned, SharedLine, SharedPoint};
@@ -37,6 +38,8 @@ pub struct Parts {
     pub points: Vec<SharedPoint>,
     /// The faces that are kept because somebody wants them so.
     region: Vec<FaceId>,
+    /// The faces of small parts that stay.
+    pub staying_small: Beside,
 }
 
 /// What becomes of a surface.
@@ -128,6 +131,7 @@ impl Parts {
             touching: apart.touching,
             points: apart.points,
             region: Vec::new(),
+            staying_small: Beside::default(),
         };
         for (i, part) in parts.into_iter().enumerate() {
             for &face in &part.faces {
@@ -155,6 +159,7 @@ impl Parts {
         }
         chosen.check(settings)?;
         chosen.attach(mesh);
+        chosen.staying_small = Beside::new(&chosen.kept, settings);
         chosen.keep(region);
         let cleaned = Cleaned {
             mesh: apart.mesh,

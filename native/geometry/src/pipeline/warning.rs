@@ -8,6 +8,7 @@ use super::mirror::{Mirror, Plane};
 use super::region::KeptFaces;
 use super::report::{Mirrored, PartReport, Rejoined};
 use super::settings::Settings;
+use super::small::Beside;
 use crate::measure::cut_polygon;
 use crate::mesh::PolygonMesh;
 use crate::nearest::{Bvh, crossing_pairs};
@@ -48,6 +49,8 @@ pub(super) struct Made<'a> {
     pub lost_marks: f64,
     pub rejoined: Option<Rejoined>,
     pub kept_faces: Option<KeptFaces>,
+    /// Small parts that stay.
+    pub staying_small: Beside,
 }
 
 impl From<Fault> for Warning {
@@ -148,7 +151,9 @@ impl Made<'_> {
     }
 
     fn count(&self, settings: &Settings) -> Option<Fault> {
-        let [n_asked, n_faces] = [settings.faces, self.n_faces()];
+        let small = self.staying_small;
+        let n_asked = settings.faces + small.n_less;
+        let n_faces = self.n_faces() + small.n_faces;
         let off_pct = 100.0 * n_faces.abs_diff(n_asked) as f64 / n_asked as f64;
         (off_pct > MOST_COUNT_PCT).then_some(Fault::Count { n_asked, n_faces })
     }

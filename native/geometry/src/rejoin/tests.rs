@@ -356,3 +356,14 @@ fn sheets_have_vertices_where_something_stays() {
         }
     }
 }
+
+#[test]
+fn what_would_make_many_faces_more_is_left_and_not_joined() {
+    let (stack, mut line) = wall(&[6]);
+    line.stays = true;
+    line.points = (0..=200).map(|k| DVec3::Z * 0.03 * f64::from(k)).collect();
+    let result = rejoined(&stack, std::slice::from_ref(&line));
+    assert_eq!(result.joined, [None]);
+    let n_faces = result.mesh.n_faces();
+    assert_eq!(n_faces, stack.faces.len());
+}

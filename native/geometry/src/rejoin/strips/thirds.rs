@@ -15,25 +15,57 @@ use glam::DVec3;
 use super::Leveling;
 use crate::mesh::VertexId;
 use crate::progress::{Cancelled, Progress};
+use crate::rejoin::chain::Chain;
 use crate::rejoin::{Edge, Line, sorted};
 
 /// How far from an edge the new vertices are, as a share of the quad.
 const DEPTH: f64 = 0.4;
+/// All cuts together make this share of the faces more at most. With less room, borders of few edges
+/// are parted where they could be joined; with more, a board against a dense knob becomes all cuts.
+const MOST_MORE: f64 = 0.5;
+/// Or so many faces more: a few quads are joined whatever they meet.
+const FEW_MORE: usize = 100;
 
 impl Leveling {
-    /// Cuts edges of the chains that have fewer than others of their line.
+    /// Cuts edges of the chains that have fewer than others of their line, unless that would make
+    /// too many faces: then the line is left, and its sheets are parted there.
     pub(super) fn cut_in_thirds(
         &mut self,
         lines: &[Line],
         progress: &Progress<'_>,
     ) -> Result<(), Cancelled> {
+        let share = (MOST_MORE * self.n_given as f64) as usize;
+        let mut room = share.max(FEW_MORE);
         for (line, of) in lines.iter().enumerate() {
             progress.check()?;
+            let n_more = self.n_more(line, of.fewest());
+            if n_more > room {
+                continue;
+            }
+            room -= n_more;
             for k in 0..self.chains[line].len() {
                 while self.lengthened((line, of.fewest()), k) {}
             }
         }
         Ok(())
+    }
+
+    /// How many faces more a line takes.
+    fn n_more(&self, line: usize, fewest: usize) -> usize {
+        let chains = &self.chains[line];
+        let most = chains.iter().map(|chain| chain.vertices.len()).max();
+        let most = most.unwrap_or(0).max(fewest);
+        let more = |chain: &Chain| {
+            let n_sides = if chain.is_border { 1 } else { 2 };
+            let n_edges = most - chain.vertices.len();
+            // Three quads more for two edges, or a triangle for one.
+            if self.are_quads[chain.sheet] {
+                n_edges.div_ceil(2) * 3 * n_sides
+            } else {
+                n_edges * n_sides
+            }
+        };
+        chains.iter().map(more).sum()
     }
 
     /// Makes a chain as long as the longest of its line, as far as each of its edges is cut once; whether any was.
