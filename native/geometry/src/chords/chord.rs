@@ -22,7 +22,7 @@ const MOST_TURN: f64 = 0.2;
 /// The quads that one cut through opposite edges crosses.
 pub struct Chord {
     rungs: Vec<Rung>,
-    n_quads: usize,
+    pub n_quads: usize,
     /// What it costs to take it out, per quad.
     cost: f64,
 }

@@ -11,6 +11,8 @@ mod mesh;
 #[cfg(test)]
 mod tests;
 
+use std::ops::RangeInclusive;
+
 use glam::DVec3;
 
 use crate::mesh::{Id, PolygonMesh, VertexId};
@@ -41,8 +43,9 @@ pub struct Fewer {
     pub images: Option<Vec<VertexId>>,
 }
 
-/// Takes chords out until there are no more than `most` quads: always the one whose rungs are shortest
-/// and turn least, of those that leave the topology, the lines and the shape of quads as they are.
+/// Takes chords out until there are no more quads than the range has, and no fewer where that can be:
+/// always the chord whose rungs are shortest and turn least, of those that leave the topology, the
+/// lines and the shape of quads as they are.
 ///
 /// None where faces are not quads, two at an edge at most, or where no chord is left before that.
 /// O(n) for each chord that is tried; often the first one tried goes.
@@ -52,18 +55,21 @@ pub struct Fewer {
 pub fn fewer(
     quads: &PolygonMesh,
     rules: Rules<'_>,
-    most: usize,
+    counts: RangeInclusive<usize>,
     progress: &Progress,
 ) -> Result<Option<Fewer>, Cancelled> {
     let Some(mut state) = State::new(quads, rules) else {
         return Ok(None);
     };
     let n_first = state.quads.len();
-    while state.quads.len() > most {
-        let done = (n_first - state.quads.len()) as f64 / (n_first - most).max(1) as f64;
+    while state.quads.len() > *counts.end() {
+        let done = (n_first - state.quads.len()) as f64 / (n_first - counts.end()) as f64;
         progress.at(done)?;
         let chords = Chord::all(&state);
-        let Some(next) = chords.iter().find_map(|chord| chord.collapsed(&state)) else {
+        let leaves_enough = |chord: &&Chord| state.quads.len() - chord.n_quads >= *counts.start();
+        let (first, last): (Vec<_>, Vec<_>) = chords.iter().partition(leaves_enough);
+        let mut ordered = first.into_iter().chain(last);
+        let Some(next) = ordered.find_map(|chord| chord.collapsed(&state)) else {
             return Ok(None);
         };
         state = next;

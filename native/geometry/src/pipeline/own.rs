@@ -74,6 +74,11 @@ fn is_coarse(mesh: &TriangleMesh, n_asked: usize) -> bool {
     mesh.n_faces() as f64 <= 2.0 * (1.0 + MOST_OFF) * n_asked as f64
 }
 
+/// Whether two counts are about the same.
+fn is_about(n: usize, other: usize) -> bool {
+    n <= most_faces(other) && other <= most_faces(n)
+}
+
 /// So many faces are about as many as asked for.
 fn most_faces(n_asked: usize) -> usize {
     let few = FEW_OFF.min(n_asked / QUADS_PER_OFF);
@@ -156,18 +161,17 @@ impl Wanted<'_> {
         let Some(own) = self.paired(whole, &progress.part("", 0.0, 0.5))? else {
             return Ok(None);
         };
-        let most = most_faces(self.n_faces);
         if !own.is_regular(self.n_faces) {
             return Ok(None);
         }
-        if own.quads.n_faces() <= most {
+        if own.quads.n_faces() <= most_faces(self.n_faces) {
             return Ok(Some(own));
         }
         let is_grid = || pair::Grid::of(&own.quads, &own.kept).is_some();
         if self.may_be_grid(whole) && is_grid() {
             return Ok(None);
         }
-        own.fewer(most, &progress.part("", 0.5, 1.0))
+        own.fewer(self.n_faces, &progress.part("", 0.5, 1.0))
     }
 
     /// The part's triangles as quads, if all of them are, none of them across a line that stays, and
@@ -213,7 +217,13 @@ impl Wanted<'_> {
     /// The quads cut into finer ones, if these have the count and a good shape.
     fn fine(&self, own: &Own) -> Option<Fine> {
         let layout = Layout::of(&own.quads, own.images.as_deref())?;
-        let counts = layout.counts(self.n_faces);
+        let as_they_are = vec![1; layout.n_strips()];
+        let are_right = is_about(own.quads.n_faces(), self.n_faces);
+        let counts = if own.is_near(self.n_faces) && are_right {
+            as_they_are
+        } else {
+            layout.counts(self.n_faces)
+        };
         let n_quads = layout.n_quads(&counts);
         let most = |n| {
             let near = own.is_near(self.n_faces).then_some(n + n / NEAR_PER_OFF);
@@ -255,13 +265,15 @@ struct Before {
 }
 
 impl Own {
-    /// Quads without some strips, no more than `most`; none where they have no good ones left.
-    fn fewer(self, most: usize, progress: &Progress<'_>) -> Result<Option<Self>, Error> {
+    /// Quads without some strips, about as many as asked for; none where they have no good ones left.
+    fn fewer(self, n_asked: usize, progress: &Progress<'_>) -> Result<Option<Self>, Error> {
+        let most = most_faces(n_asked);
+        let counts = n_asked.saturating_sub(most - n_asked)..=most;
         let rules = chords::Rules {
             lines: &self.kept,
             images: self.images.as_deref(),
         };
-        let Some(fewer) = chords::fewer(&self.quads, rules, most, progress)? else {
+        let Some(fewer) = chords::fewer(&self.quads, rules, counts, progress)? else {
             return Ok(None);
         };
         let n = fewer.quads.n_vertices();
