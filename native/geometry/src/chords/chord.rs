@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 
-use super::mesh::{NONE, On, State, is_open, twins};
+use super::mesh::{NONE, On, State, is_open, twins, valences};
 use super::{mean, sorted};
 use crate::groups::Groups;
 
 /// More quads than this never meet at a vertex, nor at one of a border, unless they did before.
-const MOST_VALENCE: usize = 6;
+pub const MOST_VALENCE: usize = 6;
 const MOST_AT_BORDER: usize = 4;
 /// What a rung costs on flat ground, where 1 less the cosine is what its turn costs: without it flat
 /// ground would lose its chords in any order.
@@ -156,20 +156,17 @@ fn chords(state: &State) -> (Vec<u32>, usize) {
     groups.numbered()
 }
 
-/// Whether the ends of a rung may become one vertex: not two corners, nor two of borders but along one,
-/// nor one of a border and a corner beside it.
+/// Whether the ends of a rung may become one vertex: not two that stay, nor two of borders but along
+/// one; no border goes to a corner beside it, and no line to a pole.
 fn may_shrink(state: &State, rung: Rung) -> bool {
-    let ends = rung.ends.map(|v| v as usize);
-    let [are_corners, are_open] = [
-        ends.iter().all(|&v| state.on[v] == On::Corner),
-        ends.iter().all(|&v| state.is_open[v]),
-    ];
-    let has_corner = ends
-        .iter()
-        .any(|&v| state.on[v] == On::Corner && !state.is_open[v]);
-    let has_open = ends.iter().any(|&v| state.is_open[v]);
-    let leaves_border = has_corner && has_open || are_open && !rung.is_border;
-    !are_corners && !leaves_border
+    let [a, b] = rung.ends.map(|v| v as usize);
+    let [least, most] = [state.on[a].min(state.on[b]), state.on[a].max(state.on[b])];
+    let has_pole = most == On::Pole && least != On::Nothing;
+    let is_inner_corner = |v: usize| state.on[v] == On::Corner && !state.is_open[v];
+    let goes_inside =
+        is_inner_corner(a) && state.is_open[b] || is_inner_corner(b) && state.is_open[a];
+    let leaves_border = state.is_open[a] && state.is_open[b] && !rung.is_border;
+    !least.stays() && !has_pole && !goes_inside && !leaves_border
 }
 
 /// Whether a rung goes from line to line.
@@ -181,7 +178,7 @@ fn joins_lines(state: &State, rung: Rung) -> bool {
     are_on && !state.is_line(rung.ends)
 }
 
-/// What the new vertices are on; none where two corners became one.
+/// What the new vertices are on; none where two that stay became one.
 fn on(before: &State, (new, n): (&[u32], usize), lines: &[[u32; 2]]) -> Option<Vec<On>> {
     let mut degree = vec![0; n];
     for &v in lines.iter().flatten() {
@@ -193,15 +190,15 @@ fn on(before: &State, (new, n): (&[u32], usize), lines: &[[u32; 2]]) -> Option<V
         _ => On::Corner,
     };
     let mut on: Vec<On> = degree.iter().map(by_degree).collect();
-    let mut was_corner = vec![false; n];
+    let mut has_stayed = vec![false; n];
     for (v, &was) in before.on.iter().enumerate() {
-        if was == On::Corner {
+        if was.stays() {
             let at = new[v] as usize;
-            if was_corner[at] {
+            if has_stayed[at] {
                 return None;
             }
-            was_corner[at] = true;
-            on[at] = On::Corner;
+            has_stayed[at] = true;
+            on[at] = was;
         }
     }
     Some(on)
@@ -223,7 +220,7 @@ fn places(before: &State, new: &[u32], n: usize) -> Vec<DVec3> {
 
 /// Whether every vertex has as many quads as it may.
 fn valences_stay(before: &State, after: &State, new: &[u32]) -> bool {
-    let [was, is] = [before, after].map(valences);
+    let [was, is] = [before, after].map(|state| valences(&state.quads, state.places.len()));
     let mut most_before = vec![0; is.len()];
     for (v, &at) in new.iter().enumerate() {
         most_before[at as usize] = most_before[at as usize].max(was[v]);
@@ -237,14 +234,6 @@ fn valences_stay(before: &State, after: &State, new: &[u32]) -> bool {
         let before = most_before[v];
         is[v] >= least.min(before) && is[v] <= most.max(before)
     })
-}
-
-fn valences(state: &State) -> Vec<usize> {
-    let mut valences = vec![0; state.places.len()];
-    for &v in state.quads.iter().flatten() {
-        valences[v as usize] += 1;
-    }
-    valences
 }
 
 /// Whether no quad that is left has turned over or become much worse.

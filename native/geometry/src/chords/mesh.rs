@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::chord::MOST_VALENCE;
 use super::{Fewer, Rules, ids, mean, sorted};
 use crate::mesh::{PolygonMesh, VertexId};
 
@@ -16,6 +17,15 @@ pub enum On {
     Nothing,
     Line,
     Corner,
+    /// On nothing, but the middle of many quads, as of a lid, which stays where it is.
+    Pole,
+}
+
+impl On {
+    /// Whether it stays where it is.
+    pub fn stays(self) -> bool {
+        self >= Self::Corner
+    }
 }
 
 /// Of vertices that become one those that weigh most say where it is: corners, then borders, then lines.
@@ -55,7 +65,12 @@ impl State {
         lines.extend(borders(&quads, &twins));
         lines.sort_unstable();
         lines.dedup();
-        let on = on_lines(&lines, mesh.positions());
+        let mut on = on_lines(&lines, mesh.positions());
+        for (on, n) in on.iter_mut().zip(valences(&quads, n)) {
+            if *on == On::Nothing && n > MOST_VALENCE {
+                *on = On::Pole;
+            }
+        }
         let is_open = is_open(&quads, &twins, n);
         let first_weights = on.iter().copied().zip(is_open.iter().copied()).collect();
         Some(Self {
@@ -160,6 +175,15 @@ pub fn twins(quads: &[[u32; 4]], n_vertices: usize) -> Option<Vec<usize>> {
 fn borders(quads: &[[u32; 4]], twins: &[usize]) -> impl Iterator<Item = [u32; 2]> {
     let open = (0..twins.len()).filter(|&h| twins[h] == NONE);
     open.map(|h| sorted([quads[h / 4][h % 4], quads[h / 4][(h + 1) % 4]]))
+}
+
+/// How many quads each vertex has.
+pub fn valences(quads: &[[u32; 4]], n_vertices: usize) -> Vec<usize> {
+    let mut valences = vec![0; n_vertices];
+    for &v in quads.iter().flatten() {
+        valences[v as usize] += 1;
+    }
+    valences
 }
 
 /// Whether each vertex is on a border.

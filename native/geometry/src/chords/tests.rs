@@ -121,6 +121,32 @@ fn quads_that_are_their_own_image_stay_so() {
 }
 
 #[test]
+fn the_middle_of_a_lid_stays_where_it_is() {
+    // Eight quads round a pole, their outer sides in a ring of sixteen; two rings of quads round them.
+    let at = |radius: f64, i: u32| {
+        let (sin, cos) = crate::elementary::sin_cos(std::f64::consts::TAU * f64::from(i) / 16.0);
+        DVec3::new(radius * cos, radius * sin, 0.0)
+    };
+    let rings = [1.0, 1.3, 1.6].into_iter();
+    let rings = rings.flat_map(|radius| (0..16).map(move |i| at(radius, i)));
+    let points: Vec<DVec3> = [DVec3::ZERO].into_iter().chain(rings).collect();
+    let lid = (0..8).map(|i| [0, 1 + 2 * i, 2 + 2 * i, 1 + (2 * i + 2) % 16]);
+    let ring = |first: u32| {
+        (0..16).map(move |i| {
+            let next = (i + 1) % 16;
+            [first + i, first + 16 + i, first + 16 + next, first + next]
+        })
+    };
+    let quads: Vec<[u32; 4]> = lid.chain(ring(1)).chain(ring(17)).collect();
+    let mesh = PolygonMesh::from_faces(points, &quads).unwrap();
+    let fewer = made(&mesh, Rules::default(), 20).unwrap();
+    assert!(fewer.quads.n_faces() <= 20);
+    let pole = fewer.vertex_of[0];
+    assert_eq!(fewer.quads.position(pole), DVec3::ZERO);
+    assert_eq!(shape(&fewer.quads), (Some(0), 1, 1));
+}
+
+#[test]
 fn a_cube_of_six_quads_and_what_is_no_quads_cannot_get_fewer() {
     let corner = |i: u32| {
         let bit = |bit: u32| f64::from(i >> bit & 1);
