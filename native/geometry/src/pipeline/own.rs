@@ -167,6 +167,9 @@ impl Wanted<'_> {
         if own.quads.n_faces() <= most_faces(self.n_faces) {
             return Ok(Some(own));
         }
+        if !own.came_in_quads {
+            return Ok(None);
+        }
         let is_grid = || pair::Grid::of(&own.quads, &own.kept).is_some();
         if self.may_be_grid(whole) && is_grid() {
             return Ok(None);
@@ -196,6 +199,7 @@ impl Wanted<'_> {
         if !is_all {
             return Ok(None);
         }
+        let came_in_quads = came_in_quads && !judge::has_new_poles((mesh, &pairs.quads), &is_side);
         let images = match self.mirror {
             (Role::Whole, Some(plane)) if plane.was_symmetric => images(&pairs.quads, plane.axis),
             _ => None,

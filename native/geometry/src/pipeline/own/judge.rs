@@ -42,6 +42,21 @@ pub fn n_quads(part: &TriangleMesh, sides: &Marks) -> Option<usize> {
     is_most.then_some(part.n_faces() / 2)
 }
 
+/// Whether quads meet at a pole that was no pole of quads when they came in, as that of a UV sphere.
+pub fn has_new_poles(
+    (part, quads): (&TriangleMesh, &PolygonMesh),
+    is_side: &HalfedgeMap<bool>,
+) -> bool {
+    let mut n_quads = vec![0; part.n_vertices()];
+    for v in quads.corners() {
+        n_quads[v.index()] += 1;
+    }
+    let is_pole = |v: VertexId| n_quads[v.index()] > MOST_VALENCE;
+    let is_no_half = |face: &FaceId| !is_half(part, is_side, *face);
+    let mut others = part.face_ids().filter(is_no_half);
+    others.any(|face| part.face(face).into_iter().any(is_pole))
+}
+
 /// Takes diagonals of quads that came in from marked halfedges: where one is bent, it is no sharp edge.
 pub fn without_diagonals(
     part: &TriangleMesh,

@@ -160,6 +160,21 @@ fn strips_are_taken_out_of_quads_that_are_finer_than_asked_for() {
 }
 
 #[test]
+fn a_fan_of_triangles_is_no_pole_of_quads() {
+    // A tube of sixteen sides whose lower end is closed by a fan.
+    let tube = tube(16, 5);
+    let middle = tube.n_vertices() as u32;
+    let faces = tube.faces().map(|f| f.iter().map(|v| v.0).collect());
+    let fan = (0..16).map(|i| vec![middle, (i + 1) % 16, i]);
+    let faces: Vec<Vec<u32>> = faces.chain(fan).collect();
+    let points = tube.positions().iter().copied().chain([DVec3::ZERO]);
+    let mesh = PolygonMesh::from_faces(points.collect(), &faces).unwrap();
+    let made = made(&mesh, &asked(mesh.n_faces()));
+    let flow = made.report.parts[0].flow.as_ref();
+    assert!(!matches!(flow, Some(Flowed::Own { .. })), "{flow:?}");
+}
+
+#[test]
 fn as_many_quads_as_came_in_stay_what_they_were_in_every_part() {
     // A rod of many quads beside a slab of few: by area the rod would get next to none.
     let rod = tube(12, 20);
