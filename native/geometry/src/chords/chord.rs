@@ -105,14 +105,14 @@ impl Chord {
         let mut lines: Vec<[u32; 2]> = ends.filter(|[a, b]| a != b).map(sorted).collect();
         lines.sort_unstable();
         lines.dedup();
-        let on = on(before, (&new, n as usize), &lines)?;
-        let twins = twins(&quads, n as usize)?;
+        let on = on(before, (&new, n), &lines)?;
+        let twins = twins(&quads, n)?;
         let after = State {
-            places: places(before, &new, n as usize),
-            is_open: is_open(&quads, &twins, n as usize),
+            places: places(before, &new, n),
+            is_open: is_open(&quads, &twins, n),
             twins,
             images: before.images.as_ref().map(|images| {
-                let mut after = vec![0; n as usize];
+                let mut after = vec![0; n];
                 for (v, &image) in images.iter().enumerate() {
                     after[new[v] as usize] = named(image);
                 }

@@ -105,7 +105,7 @@ impl State {
     /// How many edges there are less how many vertices and quads: the Euler number, turned round.
     pub fn n_edges_less(&self) -> isize {
         let n_open = self.twins.iter().filter(|&&t| t == NONE).count();
-        let n_edges = (4 * self.quads.len() + n_open) / 2;
+        let n_edges = 2 * self.quads.len() + n_open / 2;
         n_edges as isize - (self.places.len() + self.quads.len()) as isize
     }
 
