@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 
-use super::mesh::{NONE, On, State, is_open, twins, valences};
-use super::{mean, sorted};
+use super::leaving::valences;
+use super::mesh::{NONE, On, State, is_open, middles, twins};
+use super::sorted;
 use crate::groups::Groups;
 
 /// More quads than this never meet at a vertex, nor at one of a border, unless they did before.
@@ -89,13 +90,8 @@ impl Chord {
         let named = |v: u32| new[v as usize];
         let moved = before.quads.iter().map(|quad| quad.map(named));
         let is_left = |quad: &[u32; 4]| (0..4).all(|i| quad[i] != quad[(i + 1) % 4]);
-        let kept: Vec<usize> = moved
-            .clone()
-            .enumerate()
-            .filter(|(_, quad)| is_left(quad))
-            .map(|(q, _)| q)
-            .collect();
-        let quads: Vec<[u32; 4]> = moved.filter(is_left).collect();
+        let (kept, quads): (Vec<usize>, Vec<[u32; 4]>) =
+            moved.enumerate().filter(|(_, quad)| is_left(quad)).unzip();
         let is_gone = before.quads.len() - quads.len() == self.n_quads;
         let is_pinched = quads.iter().any(|q| q[0] == q[2] || q[1] == q[3]);
         if !is_gone || is_pinched || quads.is_empty() {
@@ -108,7 +104,7 @@ impl Chord {
         let on = on(before, (&new, n), &lines)?;
         let twins = twins(&quads, n)?;
         let after = State {
-            places: places(before, &new, n),
+            places: middles((&new, n), &before.weights(), &before.places),
             is_open: is_open(&quads, &twins, n),
             twins,
             images: before.images.as_ref().map(|images| {
@@ -204,20 +200,6 @@ fn on(before: &State, (new, n): (&[u32], usize), lines: &[[u32; 2]]) -> Option<V
     Some(on)
 }
 
-/// Each new vertex in the middle of those that became it and are on the most of all: see [`State::weight`].
-fn places(before: &State, new: &[u32], n: usize) -> Vec<DVec3> {
-    let mut members = vec![Vec::new(); n];
-    for (v, &at) in new.iter().enumerate() {
-        members[at as usize].push(v);
-    }
-    let place = |members: Vec<usize>| {
-        let most = members.iter().map(|&v| before.weight(v)).max();
-        let chosen = members.iter().filter(|&&v| Some(before.weight(v)) == most);
-        mean(chosen.map(|&v| before.places[v]))
-    };
-    members.into_iter().map(place).collect()
-}
-
 /// Whether every vertex has as many quads as it may.
 fn valences_stay(before: &State, after: &State, new: &[u32]) -> bool {
     let [was, is] = [before, after].map(|state| valences(&state.quads, state.places.len()));
@@ -257,7 +239,8 @@ fn shape(p: [DVec3; 4]) -> (DVec3, f64) {
     (normal, turns.fold(1.0, f64::min))
 }
 
-fn normals(quads: &[[u32; 4]], places: &[DVec3]) -> Vec<DVec3> {
+/// The normal at each vertex of quads, by their areas.
+pub fn normals(quads: &[[u32; 4]], places: &[DVec3]) -> Vec<DVec3> {
     let mut sums = vec![DVec3::ZERO; places.len()];
     for quad in quads {
         let [a, b, c, d] = quad.map(|v| places[v as usize]);

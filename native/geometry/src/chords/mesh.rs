@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use super::chord::MOST_VALENCE;
-use super::{Fewer, Rules, ids, mean, sorted};
+use super::leaving::{Leaving, end, valences};
+use super::{Fewer, Rules, ids, sorted};
 use crate::mesh::{PolygonMesh, VertexId};
 
 /// A line that turns by more than this has a corner: its cosine (50 degrees).
@@ -72,10 +73,9 @@ impl State {
             }
         }
         let is_open = is_open(&quads, &twins, n);
-        let first_weights = on.iter().copied().zip(is_open.iter().copied()).collect();
         Some(Self {
             places: mesh.positions().to_vec(),
-            first_weights,
+            first_weights: weights(&on, &is_open),
             is_open,
             on,
             lines,
@@ -98,8 +98,9 @@ impl State {
         self.lines.binary_search(&sorted(edge)).is_ok()
     }
 
-    pub fn weight(&self, v: usize) -> Weight {
-        (self.on[v], self.is_open[v])
+    /// What each vertex weighs.
+    pub fn weights(&self) -> Vec<Weight> {
+        weights(&self.on, &self.is_open)
     }
 
     /// How many edges there are less how many vertices and quads: the Euler number, turned round.
@@ -111,20 +112,12 @@ impl State {
 
     /// What is left, over the first vertices' places.
     pub fn fewer(self, first: &[DVec3]) -> Fewer {
-        let mut members = vec![Vec::new(); self.places.len()];
-        for (v, &new) in self.vertex_of.iter().enumerate() {
-            members[new as usize].push(v);
-        }
-        let place = |members: &Vec<usize>| {
-            let most = members.iter().map(|&v| self.first_weights[v]).max();
-            let chosen = members
-                .iter()
-                .filter(|&&v| Some(self.first_weights[v]) == most);
-            mean(chosen.map(|&v| first[v]))
-        };
-        let places: Vec<DVec3> = members.iter().map(place).collect();
-        let is_open: Vec<[u32; 2]> = borders(&self.quads, &self.twins).collect();
-        let mut open = is_open;
+        let places = middles(
+            (&self.vertex_of, self.places.len()),
+            &self.first_weights,
+            first,
+        );
+        let mut open: Vec<[u32; 2]> = borders(&self.quads, &self.twins).collect();
         open.sort_unstable();
         let inner = self
             .lines
@@ -142,48 +135,43 @@ impl State {
     }
 }
 
+fn weights(on: &[On], is_open: &[bool]) -> Vec<Weight> {
+    on.iter().copied().zip(is_open.iter().copied()).collect()
+}
+
+/// Each of `n` new vertices in the middle of those that weigh most of all that became it.
+pub fn middles((new, n): (&[u32], usize), weights: &[Weight], places: &[DVec3]) -> Vec<DVec3> {
+    let mut members = vec![Vec::new(); n];
+    for (v, &at) in new.iter().enumerate() {
+        members[at as usize].push(v);
+    }
+    let middle = |members: Vec<usize>| {
+        let most = members.iter().map(|&v| weights[v]).max();
+        let chosen = members.iter().filter(|&&v| Some(weights[v]) == most);
+        let (sum, n) = chosen.fold((DVec3::ZERO, 0.0), |(sum, n), &v| {
+            (sum + places[v], n + 1.0)
+        });
+        sum / f64::max(n, 1.0)
+    };
+    members.into_iter().map(middle).collect()
+}
+
 /// The other side of each halfedge, or none at a border; nothing where an edge has a side twice.
 pub fn twins(quads: &[[u32; 4]], n_vertices: usize) -> Option<Vec<usize>> {
-    let mut starts = vec![0; n_vertices + 1];
-    for &v in quads.iter().flatten() {
-        starts[v as usize + 1] += 1;
-    }
-    for v in 0..n_vertices {
-        starts[v + 1] += starts[v];
-    }
-    let mut free = starts.clone();
-    let mut leaving = vec![0; 4 * quads.len()];
-    for (h, &v) in quads.iter().flatten().enumerate() {
-        leaving[free[v as usize]] = h;
-        free[v as usize] += 1;
-    }
-    let ends = |h: usize| [quads[h / 4][h % 4], quads[h / 4][(h + 1) % 4]];
-    let along = |[a, b]: [u32; 2]| {
-        let from = &leaving[starts[a as usize]..starts[a as usize + 1]];
-        from.iter().copied().filter(move |&h| ends(h)[1] == b)
+    let leaving = Leaving::new(quads, n_vertices);
+    let twin = |h: usize| {
+        let [from, to] = [quads[h / 4][h % 4], end(quads, h)];
+        let along = leaving.of(from as usize).iter();
+        let is_alone = from != to && along.filter(|&&g| end(quads, g) == to).count() == 1;
+        is_alone.then(|| leaving.twin(quads, h).unwrap_or(NONE))
     };
-    (0..4 * quads.len())
-        .map(|h| {
-            let [a, b] = ends(h);
-            let is_alone = a != b && along([a, b]).count() == 1;
-            is_alone.then(|| along([b, a]).next().unwrap_or(NONE))
-        })
-        .collect()
+    (0..4 * quads.len()).map(twin).collect()
 }
 
 /// The edges with one side, smaller end first.
 fn borders(quads: &[[u32; 4]], twins: &[usize]) -> impl Iterator<Item = [u32; 2]> {
     let open = (0..twins.len()).filter(|&h| twins[h] == NONE);
     open.map(|h| sorted([quads[h / 4][h % 4], quads[h / 4][(h + 1) % 4]]))
-}
-
-/// How many quads each vertex has.
-pub fn valences(quads: &[[u32; 4]], n_vertices: usize) -> Vec<usize> {
-    let mut valences = vec![0; n_vertices];
-    for &v in quads.iter().flatten() {
-        valences[v as usize] += 1;
-    }
-    valences
 }
 
 /// Whether each vertex is on a border.

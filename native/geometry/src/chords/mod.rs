@@ -7,17 +7,18 @@
 //! they are. Not done here: laying the quads on a surface, and closed quads that flow (`flow`).
 
 mod chord;
+mod leaving;
 mod mesh;
 #[cfg(test)]
 mod tests;
 
 use std::ops::RangeInclusive;
 
-use glam::DVec3;
-
 use crate::mesh::{Id, PolygonMesh, VertexId};
 use crate::progress::{Cancelled, Progress};
 use chord::Chord;
+pub use chord::normals;
+pub use leaving::{Leaving, end, next, valences};
 use mesh::State;
 
 /// What stays of quads that get fewer.
@@ -75,12 +76,6 @@ pub fn fewer(
         state = next;
     }
     Ok(Some(state.fewer(quads.positions())))
-}
-
-/// The mean of some places.
-fn mean(places: impl Iterator<Item = DVec3>) -> DVec3 {
-    let (sum, n) = places.fold((DVec3::ZERO, 0.0), |(sum, n), p| (sum + p, n + 1.0));
-    sum / f64::max(n, 1.0)
 }
 
 fn sorted([a, b]: [u32; 2]) -> [u32; 2] {

@@ -1,8 +1,10 @@
 use std::collections::BTreeSet;
 
+use glam::DVec3;
+
 use super::*;
 use crate::measure;
-use crate::shapes::CUBE_QUADS;
+use crate::shapes::{CUBE_QUADS, open_tube as tube};
 
 /// A rectangle of `n` by `m` unit squares, its vertices row by row.
 fn grid([n, m]: [u32; 2]) -> PolygonMesh {
@@ -12,23 +14,6 @@ fn grid([n, m]: [u32; 2]) -> PolygonMesh {
         [first, first + 1, first + n + 2, first + n + 1]
     };
     let points = (0..(n + 1) * (m + 1)).map(point).collect();
-    let quads: Vec<[u32; 4]> = (0..n * m).map(quad).collect();
-    PolygonMesh::from_faces(points, &quads).unwrap()
-}
-
-/// A tube of `n` sides and `m` rings of quads, open at both ends, its vertices ring by ring.
-fn tube([n, m]: [u32; 2]) -> PolygonMesh {
-    let point = |i: u32| {
-        let angle = std::f64::consts::TAU * f64::from(i % n) / f64::from(n);
-        let (sin, cos) = crate::elementary::sin_cos(angle);
-        DVec3::new(cos, sin, f64::from(i / n))
-    };
-    let quad = |i: u32| {
-        let [ring, side] = [i / n * n, i % n];
-        let next = (side + 1) % n;
-        [ring + side, ring + next, ring + n + next, ring + n + side]
-    };
-    let points = (0..n * (m + 1)).map(point).collect();
     let quads: Vec<[u32; 4]> = (0..n * m).map(quad).collect();
     PolygonMesh::from_faces(points, &quads).unwrap()
 }

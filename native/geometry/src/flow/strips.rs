@@ -6,6 +6,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::chords::{Leaving, end, next};
+
 /// What the connectivity of quads says about their flow.
 #[derive(Clone, Copy, PartialEq, Debug, Default, Serialize, Deserialize)]
 pub struct Strips {
@@ -49,56 +51,6 @@ pub fn strips(quads: &[[u32; 4]], n_vertices: usize) -> Option<Strips> {
     })
 }
 
-/// The next halfedge of the same quad.
-fn next(h: usize) -> usize {
-    h / 4 * 4 + (h + 1) % 4
-}
-
-/// The vertex that a halfedge ends at.
-fn end(quads: &[[u32; 4]], h: usize) -> u32 {
-    quads[h / 4][(h + 1) % 4]
-}
-
-/// The halfedges that leave each vertex.
-pub(super) struct Leaving {
-    starts: Vec<usize>,
-    halfedges: Vec<usize>,
-}
-
-impl Leaving {
-    pub fn new(quads: &[[u32; 4]], n_vertices: usize) -> Self {
-        let mut starts = vec![0; n_vertices + 1];
-        for &v in quads.iter().flatten() {
-            starts[v as usize + 1] += 1;
-        }
-        for v in 0..n_vertices {
-            starts[v + 1] += starts[v];
-        }
-        let mut free = starts.clone();
-        let mut halfedges = vec![0; 4 * quads.len()];
-        for (h, &v) in quads.iter().flatten().enumerate() {
-            halfedges[free[v as usize]] = h;
-            free[v as usize] += 1;
-        }
-        Self { starts, halfedges }
-    }
-
-    fn of(&self, vertex: usize) -> &[usize] {
-        &self.halfedges[self.starts[vertex]..self.starts[vertex + 1]]
-    }
-
-    /// The other side of each halfedge; none when edges do not match.
-    pub fn twins(&self, quads: &[[u32; 4]]) -> Option<Vec<usize>> {
-        let start = |h: usize| quads[h / 4][h % 4];
-        (0..4 * quads.len())
-            .map(|h| {
-                let mut across = self.of(start(next(h)) as usize).iter();
-                across.find(|&&t| start(next(t)) == start(h)).copied()
-            })
-            .collect()
-    }
-}
-
 /// The strip that crosses each halfedge, and how many there are.
 pub(super) fn follow_strips(twins: &[usize]) -> (Vec<usize>, usize) {
     let mut strip_of = vec![usize::MAX; twins.len()];
@@ -117,7 +69,7 @@ pub(super) fn follow_strips(twins: &[usize]) -> (Vec<usize>, usize) {
 
 fn edges_on_loops(quads: &[[u32; 4]], leaving: &Leaving, twins: &[usize]) -> usize {
     let mut is_seen = vec![false; twins.len()];
-    let mut last_line = vec![usize::MAX; leaving.starts.len() - 1];
+    let mut last_line = vec![usize::MAX; leaving.n_vertices()];
     let mut n_edges = 0;
     for first in 0..twins.len() {
         if is_seen[first] {

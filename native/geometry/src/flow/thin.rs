@@ -8,7 +8,8 @@ use glam::DVec3;
 
 use super::error::Error;
 use super::quads::{Flow, Report, tolerance};
-use super::strips::{Leaving, doubled_edges, follow_strips};
+use super::strips::{doubled_edges, follow_strips};
+use crate::chords::{Leaving, normals, valences};
 use crate::groups::Groups;
 use crate::measure::Seam;
 use crate::mesh::{FaceId, Id, PolygonMesh, VertexId};
@@ -60,17 +61,8 @@ pub(super) fn quads_of(mesh: &PolygonMesh) -> Vec<[u32; 4]> {
 
 /// How many vertices have not four quads.
 pub(super) fn n_irregular(n_vertices: usize, quads: &[[u32; 4]]) -> usize {
-    let valences = valences(n_vertices, quads).into_iter();
+    let valences = valences(quads, n_vertices).into_iter();
     valences.filter(|&n| n != 4).count()
-}
-
-/// How many quads each vertex has.
-fn valences(n_vertices: usize, quads: &[[u32; 4]]) -> Vec<usize> {
-    let mut valences = vec![0; n_vertices];
-    for &v in quads.iter().flatten() {
-        valences[v as usize] += 1;
-    }
-    valences
 }
 
 /// Fewer quads.
@@ -238,7 +230,7 @@ impl Strip {
         let is_gone = before.quads.len() - quads.len() == self.n_quads;
         // A sphere of quads has two vertices more than quads, and fewer where it is pinched.
         let is_whole = n_vertices == quads.len() + 2;
-        let mut valences = valences(n_vertices, &quads).into_iter();
+        let mut valences = valences(&quads, n_vertices).into_iter();
         let is_sound = valences.all(|n| (3..=MOST_VALENCE).contains(&n));
         (is_gone && is_whole && is_sound && doubled_edges(&quads, n_vertices) == 0).then_some(
             Thinned {
@@ -248,18 +240,6 @@ impl Strip {
             },
         )
     }
-}
-
-fn normals(quads: &[[u32; 4]], places: &[DVec3]) -> Vec<DVec3> {
-    let mut sums = vec![DVec3::ZERO; places.len()];
-    for quad in quads {
-        let [a, b, c, d] = quad.map(|v| places[v as usize]);
-        let area = (c - a).cross(d - b);
-        for &v in quad {
-            sums[v as usize] += area;
-        }
-    }
-    sums.iter().map(|sum| sum.normalize_or_zero()).collect()
 }
 
 #[cfg(test)]

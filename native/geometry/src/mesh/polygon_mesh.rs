@@ -190,6 +190,15 @@ impl PolygonMesh {
         &self.corners
     }
 
+    /// How many faces each vertex has.
+    pub fn faces_per_vertex(&self) -> Vec<usize> {
+        let mut n = vec![0; self.positions.len()];
+        for v in &self.corners {
+            n[v.index()] += 1;
+        }
+        n
+    }
+
     /// The corners of one face, in order.
     pub fn face(&self, face: FaceId) -> &[VertexId] {
         let [start, end] = [self.starts[face.index()], self.starts[face.index() + 1]];

@@ -100,9 +100,7 @@ impl Common<'_> {
         }
         Ok(Each(made))
     }
-}
 
-impl Common<'_> {
     /// The fewest faces of each part: what closes it; and of one in quads no smaller share of them than
     /// of all faces, so that others get no more at its cost.
     fn least(&self, parts: &[TriangleMesh]) -> Vec<usize> {

@@ -190,7 +190,7 @@ impl Wanted<'_> {
         }
         let pairs = pair::pair_open(mesh, &stay, progress)?;
         let has = |edge: &[VertexId; 2]| pairs.kept.binary_search(edge).is_ok();
-        let came_in_quads = judge::n_quads(mesh, self.sides).is_some();
+        let came_in_quads = judge::are_quads(mesh, &is_side);
         let (kept, lost): (Vec<_>, Vec<_>) = kept.into_iter().partition(has);
         let most_lost = usize::from(came_in_quads) * kept.len() / KEPT_PER_LOST;
         let is_all = pairs.quads.positions() == mesh.positions()

@@ -158,10 +158,7 @@ fn report(rod: &Rod, n_wanted: usize) -> flow::Report {
 
 /// How many vertices have not four quads.
 fn n_irregular(quads: &PolygonMesh) -> usize {
-    let mut valences = vec![0; quads.n_vertices()];
-    for v in quads.corners() {
-        valences[v.index()] += 1;
-    }
+    let valences = quads.faces_per_vertex();
     valences.into_iter().filter(|&n| n != 4).count()
 }
 

@@ -73,7 +73,8 @@ impl Beside {
 ///
 /// A part is small when it measures less than was asked for; or when it could be done, but its fair
 /// share of the faces is less than the fewest that close it, and the largest part is more than four
-/// times as large. A part in quads has no smaller share of them than of all. `amounts` has what the share of each surface goes by.
+/// times as large. A part in quads has no smaller share of them than of all. `amounts` has what the
+/// share of each surface goes by.
 pub fn mark(parts: &mut [Part], mesh: &PolygonMesh, amounts: &[f64], settings: &Settings) {
     if parts.len() < 2 {
         return;

@@ -161,6 +161,23 @@ pub fn torus(n: u32, m: u32) -> TriangleMesh {
     TriangleMesh::new(positions, faces.collect()).expect("a torus is closed")
 }
 
+/// A tube of `n` sides and `m` rings of quads, open at both ends, its vertices ring by ring.
+pub fn open_tube([n, m]: [u32; 2]) -> PolygonMesh {
+    let point = |i: u32| {
+        let angle = std::f64::consts::TAU * f64::from(i % n) / f64::from(n);
+        let (sin, cos) = sin_cos(angle);
+        DVec3::new(cos, sin, f64::from(i / n))
+    };
+    let quad = |i: u32| {
+        let [ring, side] = [i / n * n, i % n];
+        let next = (side + 1) % n;
+        [ring + side, ring + next, ring + n + next, ring + n + side]
+    };
+    let points = (0..n * (m + 1)).map(point).collect();
+    let quads: Vec<[u32; 4]> = (0..n * m).map(quad).collect();
+    PolygonMesh::from_faces(points, &quads).expect("quads have corners that exist")
+}
+
 /// Rings of `n` corners round a path, closed by flat ends.
 pub fn swept(path: &[DVec3], radius: f64, n: u32) -> TriangleMesh {
     let mut positions = Vec::new();

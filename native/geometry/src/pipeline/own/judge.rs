@@ -36,10 +36,13 @@ pub fn n_quads(part: &TriangleMesh, sides: &Marks) -> Option<usize> {
     if sides.is_empty() {
         return None;
     }
-    let is_side = sides.on(part);
-    let halves = part.face_ids().filter(|&f| is_half(part, &is_side, f));
-    let is_most = halves.count() as f64 >= MOSTLY * part.n_faces() as f64;
-    is_most.then_some(part.n_faces() / 2)
+    are_quads(part, &sides.on(part)).then_some(part.n_faces() / 2)
+}
+
+/// Whether a part came in quads, a good share of it.
+pub fn are_quads(part: &TriangleMesh, is_side: &HalfedgeMap<bool>) -> bool {
+    let halves = part.face_ids().filter(|&f| is_half(part, is_side, f));
+    halves.count() as f64 >= MOSTLY * part.n_faces() as f64
 }
 
 /// Whether quads meet at a pole that was no pole of quads when they came in, as that of a UV sphere.
@@ -47,10 +50,7 @@ pub fn has_new_poles(
     (part, quads): (&TriangleMesh, &PolygonMesh),
     is_side: &HalfedgeMap<bool>,
 ) -> bool {
-    let mut n_quads = vec![0; part.n_vertices()];
-    for v in quads.corners() {
-        n_quads[v.index()] += 1;
-    }
+    let n_quads = quads.faces_per_vertex();
     let is_pole = |v: VertexId| n_quads[v.index()] > MOST_VALENCE;
     let is_no_half = |face: &FaceId| !is_half(part, is_side, *face);
     let mut others = part.face_ids().filter(is_no_half);
@@ -83,10 +83,7 @@ impl Own {
         if self.is_near(n_wanted) {
             return self.is_modelled();
         }
-        let mut valences = vec![0; self.quads.n_vertices()];
-        for v in self.quads.corners() {
-            valences[v.index()] += 1;
-        }
+        let valences = self.quads.faces_per_vertex();
         let each = || valences.iter().zip(&self.is_border);
         let most = |&is_border: &bool| {
             if is_border {

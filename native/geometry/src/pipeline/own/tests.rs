@@ -4,7 +4,7 @@ use super::*;
 use crate::embed::Solver;
 use crate::measure;
 use crate::pipeline::{Input, Mirror, Remeshed, remesh};
-use crate::shapes::CUBE_QUADS;
+use crate::shapes::{CUBE_QUADS, open_tube as tube};
 use crate::sphere_map::check_cover;
 
 fn made(mesh: &PolygonMesh, settings: &Settings) -> Remeshed {
@@ -121,27 +121,10 @@ fn new_quads_are_made_where_that_is_asked_for_or_own_ones_would_be_too_many() {
     assert!(matches!(fewer, Flowed::Used { .. }), "{fewer:?}");
 }
 
-/// A tube of `n` sides along z, open at both ends.
-fn tube(n: u32, n_rings: u32) -> PolygonMesh {
-    let point = |i: u32| {
-        let (sin, cos) =
-            crate::elementary::sin_cos(std::f64::consts::TAU * f64::from(i % n) / f64::from(n));
-        DVec3::new(cos, sin, f64::from(i / n))
-    };
-    let quad = |i: u32| {
-        let [ring, side] = [i / n * n, i % n];
-        let next = (side + 1) % n;
-        [ring + side, ring + next, ring + n + next, ring + n + side]
-    };
-    let points = (0..n * (n_rings + 1)).map(point).collect();
-    let quads: Vec<[u32; 4]> = (0..n * n_rings).map(quad).collect();
-    PolygonMesh::from_faces(points, &quads).unwrap()
-}
-
 #[test]
 fn strips_are_taken_out_of_quads_that_are_finer_than_asked_for() {
     let closed = made(&cube(DVec3::ONE), &asked(384)).mesh;
-    for (mesh, faces, n_borders) in [(closed, 150, 0), (tube(24, 9), 96, 2)] {
+    for (mesh, faces, n_borders) in [(closed, 150, 0), (tube([24, 9]), 96, 2)] {
         let n_came = mesh.n_faces();
         let fewer = made(&mesh, &asked(faces));
         let n = fewer.mesh.n_faces();
@@ -162,7 +145,7 @@ fn strips_are_taken_out_of_quads_that_are_finer_than_asked_for() {
 #[test]
 fn a_fan_of_triangles_is_no_pole_of_quads() {
     // A tube of sixteen sides whose lower end is closed by a fan.
-    let tube = tube(16, 5);
+    let tube = tube([16, 5]);
     let middle = tube.n_vertices() as u32;
     let faces = tube.faces().map(|f| f.iter().map(|v| v.0).collect());
     let fan = (0..16).map(|i| vec![middle, (i + 1) % 16, i]);
@@ -177,7 +160,7 @@ fn a_fan_of_triangles_is_no_pole_of_quads() {
 #[test]
 fn as_many_quads_as_came_in_stay_what_they_were_in_every_part() {
     // A rod of many quads beside a slab of few: by area the rod would get next to none.
-    let rod = tube(12, 20);
+    let rod = tube([12, 20]);
     let slab = cube(DVec3::new(60.0, 60.0, 1.0));
     let n = rod.n_vertices() as u32;
     let away = slab.positions().iter().map(|&p| p + DVec3::X * 50.0);
